@@ -14,7 +14,7 @@ from compensator.lab.diagnosis.confirmation import LEAST_GAIN
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.model.fit import with_columns, with_effect
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.gain import held_out_gain
+from compensator.lab.model.gain import held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import determination
@@ -32,8 +32,10 @@ class Bending:
     def predicts_best(self, fit: Fit, candidates: Sequence[Candidate]) -> bool:
         """Whether it has a lower held-out error, for sure, than the model with any of the effects that can be it."""
         known = determination(fit)
-        others = [held_out(with_effect(fit, one.effect.name, one.shape), None, known) for one in _possible(candidates)]
-        return all(held_out_gain(other, self.after).low > 0.0 for other in others)
+        others = [
+            held_out(with_effect(fit, one.effect.name, one.shape), None, known) for one in candidates if one.physical
+        ]
+        return all(predicts_better(self.after, other) for other in others)
 
 
 def bending(fit: Fit, gathered: Candidates) -> Bending | None:
@@ -63,7 +65,3 @@ def _turns_back(gathered: Candidates) -> bool:
     ways = np.sign(dataset.rows_of([trial.motion.velocity for trial in dataset.trials]))
     trials = [set(dataset.trial_index[gathered.rows & (ways == way)].tolist()) for way in (1.0, -1.0)]
     return bool(trials[0] & trials[1])
-
-
-def _possible(candidates: Sequence[Candidate]) -> list[Candidate]:
-    return [one for one in candidates if one.physical]

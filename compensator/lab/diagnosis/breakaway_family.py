@@ -18,15 +18,15 @@ from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
 from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
-from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL, NOT_WORSE
+from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.diagnosis.pictures import picture_of_breakaway
 from compensator.lab.diagnosis.wording import named_in_words
 from compensator.lab.effects.catalogue import candidates
-from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.effects.effect import Effect
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.gain import chance_not_worse, held_out_gain
+from compensator.lab.model.gain import held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.evidence import (
@@ -170,13 +170,9 @@ def _judge(base: BreakawayFit, evidence: list[Evidence], known: dict[str, Effect
     judged = []
     for item in list(found.values())[:EXAMINED]:
         effect = known[item.block.name]
-        fit = fit_breakaway(base.rows, [*base.rows.fit.effects, effect], {**shapes, effect.name: _shape(item)})
+        fit = fit_breakaway(base.rows, [*base.rows.fit.effects, effect], {**shapes, effect.name: item.block.shape})
         judged.append(_Judged(effect, item, held_out_breakaway(fit, base.weight), fit))
     return judged
-
-
-def _shape(item: Evidence) -> Shape:
-    return item.block.key if isinstance(item.block.key, tuple) else ()
 
 
 def _candidate(
@@ -188,13 +184,13 @@ def _candidate(
         for other in judged
         if other is not one
         and left.get(other.effect.name, 0.0) < EXPLAINED_BY_RIVAL * other.item.noncentrality
-        and chance_not_worse(other.after, one.after) > NOT_WORSE
+        and not predicts_better(one.after, other.after)
     }
     nearest = max(rivals.values(), default=0.0)
     coefficients = one.fit.coefficients_of(one.effect.name)
     return Candidate(
         effect=one.effect,
-        shape=_shape(one.item),
+        shape=one.item.block.shape,
         score=one.item.score,
         p_value=one.item.p_value,
         detectability=float(np.sqrt(one.item.noncentrality * max(0.0, 1.0 - nearest**2))),

@@ -7,16 +7,15 @@ from functools import partial
 import numpy as np
 
 from compensator.lab import progress
-from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.physical import is_physical, is_possible, shape_of
+from compensator.lab.diagnosis.physical import is_physical, is_possible
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import Effect, MotionRows
 from compensator.lab.model.fit import fit_sliding, with_columns, with_effect
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.gain import Gain, chance_not_worse, held_out_gain
+from compensator.lab.model.gain import Gain, held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import determination
@@ -57,7 +56,6 @@ def _ties(item: Evidence, best: Evidence) -> bool:
 
 
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
-NOT_WORSE = 0.10  # one-sided
 MEASURING_CHAIN = "measuring chain"
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
 SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
@@ -68,7 +66,7 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     """Candidates for the best shape of each effect: the answer, others that are confirmed, the rest; each by score."""
     before = _held_out(fit, gathered.show_in)
     sliding = None if gathered.show_in == "sliding" else fit_sliding(fit.dataset, fit.names, fit.training, fit.shapes)
-    fits = [with_effect(fit, item.block.name, shape_of(item), sliding) for item in progress.each(evidence)]
+    fits = [with_effect(fit, item.block.name, item.block.shape, sliding) for item in progress.each(evidence)]
     afters = [_held_out(explained, gathered.show_in) for explained in fits]
     given = [_evidence_given(gathered, item) for item in evidence]
     spans = _spans(gathered)
@@ -97,11 +95,14 @@ def _best_predictor(
     first = confirmed[0] if confirmed else None
     for other in confirmed[1:]:
         assert first is not None
-        kept = given[other].get(evidence[first].block.name, 0.0)
-        same = kept < EXPLAINED_BY_RIVAL * evidence[first].noncentrality
-        if same and chance_not_worse(afters[first], afters[other]) <= SIGNIFICANT:
+        if _explains(given[other], evidence[first]) and predicts_better(afters[other], afters[first]):
             first = other
     return first
+
+
+def _explains(kept: dict[str, float], other: Evidence) -> bool:
+    """Whether another effect loses most of its evidence, of which so much is kept once this one is in the model."""
+    return kept.get(other.block.name, 0.0) < EXPLAINED_BY_RIVAL * other.noncentrality
 
 
 def as_in_the_ladder(candidate: Candidate, fit: Fit, explained: Fit, show_in: MotionRows) -> Candidate:
@@ -181,8 +182,7 @@ def _rivals(index: int, evidence: list[Evidence], afters: list[HeldOut], left: d
     own = evidence[index]
     found = set()
     for other, after in zip(evidence, afters, strict=True):
-        explained = left.get(other.block.name, 0.0) < EXPLAINED_BY_RIVAL * other.noncentrality
-        if other is not own and explained and chance_not_worse(after, afters[index]) > NOT_WORSE:
+        if other is not own and _explains(left, other) and not predicts_better(afters[index], after):
             found.add(other.block.name)
     return found
 
@@ -193,7 +193,7 @@ def _candidate(
     before, after = errors
     return Candidate(
         effect=effect_named(item.block.name),
-        shape=shape_of(item),
+        shape=item.block.shape,
         score=item.score,
         p_value=item.p_value,
         detectability=_detectability(item, nearest),

@@ -8,16 +8,17 @@ from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
-from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.effects.catalogue import candidates, effect_named
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.gain import predicts_better
+from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Screening, kept_evidence, screen, screen_against_noise
+from compensator.lab.screening.evidence import Screening, screen, screen_against_noise
 from compensator.lab.screening.gathering import gather, with_noise
 from compensator.lab.screening.own_load import on_own_load
 
@@ -44,7 +45,6 @@ class FourFamilies:
         rest: effects at starts from rest; None where there are too few.
         chain: effects of the measuring chain.
         gathered: what the model may be missing in steady sliding.
-        wide: the same near reversals; None where there are none.
         left_out: effect name -> why it cannot be judged on these trials.
     """
 
@@ -53,7 +53,6 @@ class FourFamilies:
     rest: Answer | None
     chain: Answer
     gathered: Candidates
-    wide: Candidates | None
     left_out: dict[str, str]
 
     @property
@@ -67,12 +66,11 @@ class FourFamilies:
         return len(np.unique(self.gathered.fit.dataset.block_index[self.gathered.rows]))
 
     def first(self) -> Answer:
-        """The answer: that of the first family with one, unless it is the shadow of a larger effect with memory."""
+        """The answer: that of the first family with one, but for a memory effect that predicts motion better."""
         first = _first_of(self.in_order)
-        if self.memory is None or self.wide is None:
-            return first
-        shadow = first is self.steady and _casts(self.wide, self.memory, self.steady)
-        return self.memory if shadow else first
+        if first is self.steady and self.memory is not None and _predicts_motion_better(self.memory, first):
+            return self.memory
+        return first
 
 
 def judged(fit: Fit) -> FourFamilies:
@@ -99,14 +97,14 @@ def judged(fit: Fit) -> FourFamilies:
     progress.enter(CHAIN)
     chain = answer_of(fit, gathered, screen_against_noise(gathered.bases, pipeline, gathered.noise), None)
     progress.enter(MEMORY)
-    memory, wide, not_judged = _memory_of(fit)
+    memory, not_judged = _memory_of(fit)
     progress.enter(REST)
     rest, not_at_rest = breakaway_answer(fit, breakaway_rows(fit), _least_p(sliding))
     left_out = {**gathered.left_out, **not_judged, **not_at_rest}
-    return FourFamilies(steady, memory, rest, chain, gathered, wide, left_out)
+    return FourFamilies(steady, memory, rest, chain, gathered, left_out)
 
 
-def _memory_of(fit: Fit) -> tuple[Answer | None, Candidates | None, dict[str, str]]:
+def _memory_of(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
     """The family of effects with memory, on all rows in motion; None, and why, where these hold no reversals."""
     dataset = fit.dataset
     trained = np.isin(dataset.trial_index, np.unique(dataset.trial_index[fit.training]))
@@ -114,25 +112,19 @@ def _memory_of(fit: Fit) -> tuple[Answer | None, Candidates | None, dict[str, st
     wanted = [effect for effect in candidates(fit.names, dataset.facts) if effect.rows == "moving"]
     if near_reversals < FEWEST_REVERSAL_ROWS:
         why = f"needs reversals and starts: {near_reversals} rows lie near one, wanted {FEWEST_REVERSAL_ROWS}; record "
-        return None, None, {effect.name: f"{effect.name} {why}{effect.excited_by}" for effect in wanted}
+        return None, {effect.name: f"{effect.name} {why}{effect.excited_by}" for effect in wanted}
     wide = widened(fit, "moving" if dataset.rows == "sliding" else dataset.rows)
     gathered = on_own_load(gather(wide, "moving"))
     screening = screen(gathered.bases, gathered.named, dataset.block_index[gathered.rows])
-    return answer_of(wide, gathered, screening, None), gathered, gathered.left_out
+    return answer_of(wide, gathered, screening, None), gathered.left_out
 
 
-def _casts(wide: Candidates, memory: Answer, steady: Answer) -> bool:
-    """Whether what steady sliding speaks for is the shadow of a larger effect with memory, which stands without it."""
-    if memory.verdict == "nothing" or steady.verdict != "missing" or memory.strength <= steady.strength:
+def _predicts_motion_better(one: Answer, other: Answer) -> bool:
+    """Whether one family's name predicts rows in motion better than another's: its gain is above zero for sure."""
+    if one.explained is None or other.explained is None:
         return False
-    return _evidence_beside(wide, memory.candidates[0].effect.name, steady.candidates[0]) > steady.strength
-
-
-def _evidence_beside(gathered: Candidates, name: str, other: Candidate) -> float:
-    """The evidence that an effect keeps once another one is in the model."""
-    given = gathered.with_columns(gathered.fit.dataset.columns(other.effect, other.shape))
-    blocks = [block for block in given.named if block.name == name]
-    return kept_evidence(given.bases, blocks, given.noise)[name]
+    errors = [held_out(widened(fit, "moving"), "moving") for fit in (one.explained, other.explained)]
+    return predicts_better(*errors)
 
 
 def _first_of(families: list[Answer]) -> Answer:

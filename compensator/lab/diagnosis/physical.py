@@ -5,18 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.effects.effect import Shape
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import VERY_STRONG, Evidence, score_of
 
 UNSURE = 2.0  # standard errors: a coefficient so near to a bound may lie on either side of it
 ROUNDING = 1e-6  # of a shape that was looked for by its logarithm
-
-
-def shape_of(item: Evidence) -> Shape:
-    """The shape that the evidence is of; empty for an effect without one."""
-    return item.block.key if isinstance(item.block.key, tuple) else ()
 
 
 def is_physical(gathered: Candidates, item: Evidence) -> bool:
@@ -31,7 +25,7 @@ def is_possible(gathered: Candidates, item: Evidence) -> bool:
     What the measuring chain makes near reversals is nothing physical, and what the owner tells of is not missing.
     """
     fits = is_within_bounds(gathered, item) and not is_too_small(gathered, item)
-    if effect_named(item.block.name).told(gathered.fit.dataset.facts, shape_of(item)):
+    if effect_named(item.block.name).told(gathered.fit.dataset.facts, item.block.shape):
         return False
     return fits and not is_made_by_chain(gathered, item)
 
@@ -63,7 +57,7 @@ def is_too_small(gathered: Candidates, item: Evidence) -> bool:
 
 def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
     """Whether the shape lies at an upper end of a scan of all that the effect can be: what fits there goes on."""
-    ends, shape = _scanned(gathered, item), np.array(shape_of(item))
+    ends, shape = _scanned(gathered, item), np.array(item.block.shape)
     return len(ends) > 0 and bool(np.any(shape >= (1.0 - ROUNDING) * np.max(ends, axis=0)))
 
 
@@ -72,7 +66,7 @@ def is_before_scan(gathered: Candidates, item: Evidence) -> bool:
 
     It is found there with a part of its friction, and cannot be told from what the measuring chain makes of a sign.
     """
-    ends, shape = _scanned(gathered, item), shape_of(item)
+    ends, shape = _scanned(gathered, item), item.block.shape
     replaces = effect_named(item.block.name).least_of_friction > 0.0
     return replaces and len(ends) > 0 and bool(shape[0] <= (1.0 + ROUNDING) * np.min(ends[:, 0]))
 
@@ -80,7 +74,7 @@ def is_before_scan(gathered: Candidates, item: Evidence) -> bool:
 def _scanned(gathered: Candidates, item: Evidence) -> FloatArray:
     """Shapes (s, values) that a scan of all that the effect can be holds; none where a scan does not hold all."""
     effect = effect_named(item.block.name)
-    if not effect.ends_within_scan or not shape_of(item):
+    if not effect.ends_within_scan or not item.block.shape:
         return np.empty((0, 0))
     return np.array(effect.shapes(gathered.fit.dataset.trials[0].motion))
 

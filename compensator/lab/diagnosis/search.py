@@ -20,7 +20,7 @@ from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.gain import held_out_gain
+from compensator.lab.model.gain import predicts_better
 from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import determination
@@ -204,7 +204,7 @@ def _drops(start: Fit, fit: Fit, last_too: bool) -> list[Step]:
         rows = fit.dataset.choice_for([effect_named(name)])
         alike = widened(without, fit.dataset.choice_for(fit.effects))  # else the two are judged on other rows
         known = determination(without)
-        if held_out_gain(held_out(alike, rows, known), held_out(fit, rows, known)).low <= 0.0:
+        if not predicts_better(held_out(fit, rows, known), held_out(alike, rows, known)):
             fit = without
             steps.append(_step("drop", name, None, fit))
     return steps

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from compensator.lab.effects.effect import Shape
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray
 
@@ -27,6 +28,11 @@ class Block:
     base: int
     scanned: int
     key: object = None
+
+    @property
+    def shape(self) -> Shape:
+        """The effect's shape; empty for an effect without one."""
+        return self.key if isinstance(self.key, tuple) else ()
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,7 @@ def _best(gathered: Candidates, name: str) -> tuple[float, Block]:
 def _with_best(gathered: Candidates, name: str, sliding: Fit) -> Dataset:
     """The dataset with the load that a model with the effect's best shape in it predicts."""
     fit, best = gathered.fit, _best(gathered, name)[1]
-    return fit_model(fit.dataset, [*fit.names, name], fit.training, {**fit.shapes, name: _shape(best)}, sliding).dataset
+    return fit_model(fit.dataset, [*fit.names, name], fit.training, {**fit.shapes, name: best.shape}, sliding).dataset
 
 
 def _renewed(gathered: Candidates, name: str, dataset: Dataset) -> dict[object, Block]:
@@ -87,9 +87,5 @@ def _between_scanned(gathered: Candidates, name: str, dataset: Dataset) -> Block
         column = block.columns[:, 0]
         return power_within(column - base.basis @ (base.basis.T @ column), base.residual, bounds)
 
-    start = _shape(max(own, key=power))
-    return block_of(between([_shape(block) for block in own], start, lambda shape: -power(block_of(shape))))
-
-
-def _shape(block: Block) -> Shape:
-    return block.key if isinstance(block.key, tuple) else ()
+    start = max(own, key=power).shape
+    return block_of(between([block.shape for block in own], start, lambda shape: -power(block_of(shape))))

@@ -93,17 +93,18 @@ def test_a_sign_or_size_that_cannot_be_is_the_shadow_of_something_else(rows):
 
 
 @pytest.mark.parametrize(
-    ("kept", "chance", "first"),
+    ("kept", "kept_other", "better", "first"),
     [
-        (0.2, 0.004, 1),  # it explains the other's evidence, and predicts other trials better for sure
-        (0.2, 0.05, 0),  # not for sure
-        (0.8, 0.004, 0),  # the two explain different things: either may be missing
+        (0.2, 1.0, True, 1),  # it explains the other's evidence, and predicts other trials better
+        (0.8, 0.2, True, 0),  # the first explains its evidence, and not the reverse
+        (0.2, 1.0, False, 0),
+        (0.8, 0.8, True, 0),  # the two explain different things: either may be missing
     ],
 )
-def test_of_two_that_explain_the_same_the_better_predictor_is_the_answer(monkeypatch, kept, chance, first):
-    monkeypatch.setattr(examination, "chance_not_worse", lambda *_: chance)
+def test_of_a_class_the_better_predictor_is_the_answer(monkeypatch, kept, kept_other, better, first):
+    monkeypatch.setattr(examination, "predicts_better", lambda *of: of == ("other", "one") and better)
     evidence: Any = [SimpleNamespace(block=SimpleNamespace(name=n), noncentrality=100.0) for n in ("one", "other")]
-    afters: Any = [None, None]
-    given = [{"one": 0.0, "other": 0.0}, {"one": 100.0 * kept, "other": 0.0}]
+    afters: Any = ["one", "other"]
+    given = [{"one": 0.0, "other": 100.0 * kept_other}, {"one": 100.0 * kept, "other": 0.0}]
     assert examination._best_predictor([0, 1], evidence, afters, given) == first
     assert examination._best_predictor([], evidence, afters, given) is None

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from compensator.lab.model.gain import RESAMPLES, Gain, chance_not_worse, error_interval, held_out_gain
+from compensator.lab.model.gain import RESAMPLES, Gain, error_interval, held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut, relative_error, rms
 
 PER_UNIT = 30
@@ -64,8 +64,8 @@ def test_it_is_paired_so_that_scatter_between_trials_does_not_hide_it():
     after = error_of(0.98 * before.residual)
     found = held_out_gain(before, after)
     assert (found.low, found.value, found.high) == pytest.approx((0.02, 0.02, 0.02))
-    assert chance_not_worse(after, before) == 1.0
-    assert chance_not_worse(before, after) == 0.0
+    assert predicts_better(after, before)
+    assert not predicts_better(before, after)
     low, high = error_interval(before)
     assert low < before.relative < high
     assert high - low > 0.1 * before.relative
@@ -76,7 +76,7 @@ def test_a_gain_within_the_scatter_is_uncertain():
     noise = random.standard_normal(12 * PER_UNIT)
     found = held_out_gain(error_of(noise), error_of(random.permutation(noise)))
     assert found.low < 0.0 < found.high
-    assert 0.1 < chance_not_worse(error_of(noise), error_of(random.permutation(noise))) < 0.9
+    assert not predicts_better(error_of(noise), error_of(random.permutation(noise)))
 
 
 def test_nine_in_ten_intervals_hold_the_truth():
@@ -101,7 +101,7 @@ def test_a_trial_that_no_other_tells_of_does_not_outweigh_what_they_do_tell():
     assert held_out_gain(before, spoilt).value < -10.0
     evenly = held_out_gain(before, replace(spoilt, doubt=guess**2))
     assert evenly.value == pytest.approx(plain.value, abs=0.1)
-    assert chance_not_worse(replace(spoilt, doubt=guess**2), before) > 0.95
+    assert predicts_better(replace(spoilt, doubt=guess**2), before)
     assert held_out_gain(before, replace(after, doubt=np.zeros(len(guess)))) == plain
 
 
