@@ -9,7 +9,7 @@ import numpy as np
 from compensator.lab import progress
 from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.physical import is_physical, is_possible
+from compensator.lab.diagnosis.physical import is_physical
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import Effect, MotionRows
@@ -30,23 +30,15 @@ ALIKE = 0.95  # correlation of what two effects explain
 
 def best_shapes(gathered: Candidates, screening: Screening) -> list[Evidence]:
     """The best shape of every effect, best effect first; of those that tie, the one that the catalogue has first."""
-    of_each: dict[str, list[Evidence]] = {}
-    for evidence in screening.evidence:
-        of_each.setdefault(evidence.block.name, []).append(evidence)
-    found = [_best_shape(gathered, shapes) for shapes in of_each.values()]
-    ranked = sorted(found, key=lambda item: -item.score)
+    best_of: dict[str, Evidence] = {}
+    for evidence in screening.evidence:  # the best shape first
+        best_of.setdefault(evidence.block.name, evidence)
+    ranked = sorted(best_of.values(), key=lambda item: -item.score)
     order = list(catalogue())
     best = next((item for item in ranked if is_physical(gathered, item)), None)
     tied = [item for item in ranked if best is not None and _ties(item, best)]
     plainest = min(tied, key=lambda item: order.index(item.block.name), default=None)
     return ranked if plainest is None else [plainest, *(item for item in ranked if item is not plainest)]
-
-
-def _best_shape(gathered: Candidates, shapes: list[Evidence]) -> Evidence:
-    """The best one; near reversals, of those whose size can be: what swings too little, or too much, makes up by it."""
-    if gathered.show_in != "moving":
-        return shapes[0]
-    return next((item for item in shapes if item.score > 0.0 and is_possible(gathered, item)), shapes[0])
 
 
 def _ties(item: Evidence, best: Evidence) -> bool:

@@ -11,6 +11,8 @@ from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.gain import Gain
+from compensator.lab.screening.base import Block
+from compensator.lab.screening.evidence import Evidence, Screening
 
 
 @pytest.mark.parametrize(
@@ -108,3 +110,15 @@ def test_of_a_class_the_better_predictor_is_the_answer(monkeypatch, kept, kept_o
     given = [{"one": 0.0, "other": 100.0 * kept_other}, {"one": 100.0 * kept, "other": 0.0}]
     assert examination._best_predictor([0, 1], evidence, afters, given) == first
     assert examination._best_predictor([], evidence, afters, given) is None
+
+
+def test_the_shape_that_fits_best_speaks_for_its_effect_whether_it_can_be_or_not(monkeypatch):
+    column = np.sin(np.arange(50.0))
+    shapes = [((0.0053,), 253.0), ((0.0032,), 212.0)]  # the second could be, and explains clearly less
+    evidence = [
+        Evidence(Block("backlash", column[:, None], 0, 15, shape), score, score, 0.001, column)
+        for shape, score in shapes
+    ]
+    monkeypatch.setattr(examination, "is_physical", lambda _, item: item.block.key == shapes[1][0])
+    gathered: Any = SimpleNamespace(show_in="moving")
+    assert examination.best_shapes(gathered, Screening(evidence, 0.001)) == [evidence[0]]
