@@ -16,11 +16,17 @@ from bench.recording_set.recording_set import RecordingSet
 from bench.recording_set.stream import RecordingStream, stream_of_trial
 from bench.recording_set.write import write_streams
 from bench.store import Store, Trial
-from bench.store.records import OUTCOMES
-from compensator.lab.recordings.recording import Recording
+from bench.store.records import OUTCOMES, Experiment
+from compensator.lab.recordings.recording import Condition, Recording
 
 IMPORT_KIND = "import"
 FEWEST_ROWS = 2  # fewer make no recording
+CONTROL_LOOP = "recorded_by_control_loop"
+"""Parameter of an imported experiment whose rows a control loop of this bench recorded."""
+BY_CONTROL_LOOP = {"recorded_by": "control loop"}
+"""Condition by which an exported trial says so."""
+OWN_SOURCES = ("simulated", "real")
+OUTCOME, REASON = "outcome", "reason"
 
 
 def import_recording_set(
@@ -38,6 +44,8 @@ def import_recording_set(
         The experiment's id.
     """
     parameters = {"name": name, "recording_set": recording_set.name, **(further or {})}
+    if all(BY_CONTROL_LOOP.items() <= recording.conditions.items() for recording in recording_set.recordings):
+        parameters[CONTROL_LOOP] = "yes"
     rig = recording_set.rig.model_dump(mode="json", exclude_none=True)
     recordings = (_with_outcome(recording) for recording in recording_set.recordings)
     return store.add_imported(IMPORT_KIND, parameters, {"software": software()}, rig, recordings)
@@ -60,7 +68,12 @@ def export_experiment(store: Store, experiment_id: int, path: Path) -> None:
     except ValidationError as error:
         raise RecordingSetError(where, "its rig cannot be written: " + "; ".join(problems(error))) from error
     trials = _trials(store, experiment_id)
-    write_streams(rig, map(partial(_stream, store), trials), path)
+    write_streams(rig, map(partial(_stream, store, experiment), trials), path)
+
+
+def is_by_control_loop(experiment: Experiment) -> bool:
+    """Whether a control loop of this bench recorded an experiment, here or where it was exported."""
+    return experiment.source in OWN_SOURCES or CONTROL_LOOP in experiment.parameters
 
 
 def export_parquet(store: Store, experiment_id: int) -> Iterator[bytes]:
@@ -69,8 +82,8 @@ def export_parquet(store: Store, experiment_id: int) -> Iterator[bytes]:
     Raises:
         NotFoundError, RecordingSetError: as there, and where pyarrow is not installed; before the first byte.
     """
-    store.experiment(experiment_id)
-    return parquet_chunks([_stream(store, trial) for trial in _trials(store, experiment_id)])
+    experiment = store.experiment(experiment_id)
+    return parquet_chunks([_stream(store, experiment, trial) for trial in _trials(store, experiment_id)])
 
 
 def _trials(store: Store, experiment_id: int) -> list[Trial]:
@@ -81,20 +94,22 @@ def _trials(store: Store, experiment_id: int) -> list[Trial]:
     return found
 
 
-def _stream(store: Store, trial: Trial) -> RecordingStream:
+def _stream(store: Store, experiment: Experiment, trial: Trial) -> RecordingStream:
     stream = stream_of_trial(store, trial)
-    if trial.outcome == "completed":
-        return stream
-    return replace(stream, conditions={**stream.conditions, "outcome": trial.outcome, "reason": trial.reason})
+    told: dict[str, Condition] = {} if trial.outcome == "completed" else {OUTCOME: trial.outcome, REASON: trial.reason}
+    if is_by_control_loop(experiment):
+        told |= BY_CONTROL_LOOP
+    return replace(stream, conditions={**stream.conditions, **told})
 
 
 def _with_outcome(recording: Recording) -> tuple[Recording, str, str]:
     """A recording, and the outcome and reason that an export put among its conditions."""
-    conditions = dict(recording.conditions)
-    outcome = conditions.get("outcome")
-    if outcome not in OUTCOMES or outcome in ("running", "completed"):
-        return recording, "completed", ""
-    reason = str(conditions.pop("reason", ""))
-    del conditions["outcome"]
+    conditions = {key: value for key, value in recording.conditions.items() if BY_CONTROL_LOOP.get(key) != value}
+    outcome, reason = conditions.get(OUTCOME), ""
+    if outcome in OUTCOMES and outcome not in ("running", "completed"):
+        reason = str(conditions.pop(REASON, ""))
+        del conditions[OUTCOME]
+    else:
+        outcome = "completed"
     bare = Recording(recording.name, recording.kind, conditions, recording.channels, recording.events)
     return bare, str(outcome), reason

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from bench.config.rig import Rig
+from bench.recording_set.transfer import is_by_control_loop
 from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import StudyError, lab_errors
@@ -169,9 +170,6 @@ def _facts(store: Store, experiment_ids: Sequence[int]) -> Facts:
 
 LOAD = "load_torque_n_m"
 SAMPLING_DELAY = "measurement_delay"
-CONTROL_LOOP = "recorded_by_control_loop"
-"""Parameter of an imported experiment whose rows our own control loop recorded."""
-OWN_SOURCES = ("simulated", "real")
 
 
 def base_model(
@@ -189,6 +187,6 @@ def base_model(
         load_is_measured: by a torque sensor, in every trial.
     """
     experiments = [store.experiment(number) for number in experiment_ids]
-    own = all(one.source in OWN_SOURCES or CONTROL_LOOP in one.parameters for one in experiments)
+    own = all(map(is_by_control_loop, experiments))
     effects = default_effects(facts, load_is_measured)
     return (*effects, SAMPLING_DELAY) if own else effects

@@ -79,7 +79,9 @@ def test_the_owner_knows_the_joint_within_the_data_sheet_and_not_better() -> Non
 def test_what_is_written_can_be_read_and_the_seal_notices_changes(tmp_path: Path) -> None:
     sealed = write_challenge(3, "easy", tmp_path / "set.zip")
     assert sealed == tmp_path / "set.answer"
-    assert len(read_recording_set(tmp_path / "set.zip").recordings) == 7
+    recordings = read_recording_set(tmp_path / "set.zip").recordings
+    assert len(recordings) == 7
+    assert all(one.conditions["recorded_by"] == "control loop" for one in recordings)
     text = sealed.read_text()
     answer = read_sealed(sealed, tmp_path / "set.zip")
     assert answer.seed == 3

@@ -18,6 +18,7 @@ from bench.recording_set import (
     read_recording_set,
     write_recording_set,
 )
+from bench.recording_set.transfer import CONTROL_LOOP
 from bench.store import Store
 from compensator.lab.recordings.recording import CHANNELS, Event, Recording
 from tests.recording_set.test_values import CONDITIONS
@@ -111,7 +112,8 @@ def test_an_import_says_where_it_came_from_and_how_trials_ended(store: Store, tm
     experiment_id = import_recording_set(store, read_recording_set(tmp_path / "out.zip"), "from bench 3")
     found = store.experiment(experiment_id)
     assert (found.kind, found.source, found.outcome) == ("import", "imported", "completed")
-    assert found.parameters == {"name": "from bench 3", "recording_set": "out"}
+    assert found.parameters == {"name": "from bench 3", "recording_set": "out", CONTROL_LOOP: "yes"}
+    assert all("recorded_by" not in trial.conditions for trial in store.trials(experiment_id))
     assert found.provenance["software"]["version"]
     trials = store.trials(experiment_id)
     assert [(trial.name, trial.outcome, trial.reason) for trial in trials] == [

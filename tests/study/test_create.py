@@ -2,10 +2,13 @@
 
 import json
 import math
+from dataclasses import replace
 
 import pytest
 
 from bench.config.rig import Rig
+from bench.recording_set import RecordingSet, import_recording_set
+from bench.recording_set.transfer import BY_CONTROL_LOOP
 from bench.store.errors import NotFoundError
 from bench.study.compare import compare
 from bench.study.create import create_study, describe
@@ -176,3 +179,12 @@ def test_what_the_lab_is_told_of_a_rig():
     little = facts_of(Rig.model_validate({"name": "r", "gear": {"ratio": 100.0}, "arm": {"mass_kg": 0.2}}))
     assert (little.torque_per_current_n_m_a, little.stiffness_n_m_rad, little.arm_moment_n_m) == (None, None, None)
     assert little.position_count is None
+
+
+def test_trials_of_our_control_loop_have_its_sampling_delay_wherever_they_are_imported(store):
+    made = recordings(trials=plans((0.0, 0.2)), seed=1)
+    for told, last in ((BY_CONTROL_LOOP, "measurement_delay"), ({}, "stribeck")):
+        these = [replace(one, conditions={**one.conditions, **told}) for one in made]
+        number = import_recording_set(store, RecordingSet("set", RIG, these), "a")
+        assert create_study(store, "a", [number]).models[0].effects[-1] == last
+        assert store.trials(number)[0].conditions.keys() == made[0].conditions.keys()

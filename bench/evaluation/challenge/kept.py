@@ -12,7 +12,6 @@ from bench.recording_set.transfer import IMPORT_KIND
 from bench.store import Store
 from bench.store.errors import NotFoundError
 from bench.store.records import Experiment
-from bench.study.create import CONTROL_LOOP
 
 SEALED, DIFFICULTY = "sealed_answer", "difficulty"
 PAGE = 1000  # experiments read at once
@@ -38,7 +37,7 @@ class KeptChallenge:
 def keep_challenge(store: Store, seed: int, difficulty: str) -> KeptChallenge:
     """Draw, record and keep a challenge. Takes half a minute; errors as `make_challenge`."""
     made = make_challenge(seed, difficulty)
-    further = {DIFFICULTY: difficulty, SEALED: sealed(made.answer), CONTROL_LOOP: "yes"}
+    further = {DIFFICULTY: difficulty, SEALED: sealed(made.answer)}
     number = import_recording_set(store, made.recording_set, f"challenge, {difficulty}", further)
     return _shown(store.experiment(number))
 

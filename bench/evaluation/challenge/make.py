@@ -1,6 +1,6 @@
 """Makes a challenge: draws a joint that hides something, records it, and seals the answer."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ from bench.evaluation.challenge.seal import SealError, write_sealed
 from bench.evaluation.challenge.session import protocol_of, record
 from bench.evaluation.challenge.share import effort_share
 from bench.recording_set import RecordingSet, write_recording_set
+from bench.recording_set.transfer import BY_CONTROL_LOOP
 from compensator.lab.recordings.recording import Recording
 
 ATTEMPTS = 20  # a joint that cannot complete the protocol is no challenge
@@ -72,7 +73,8 @@ def make_challenge(seed: int, difficulty: str) -> Challenge:
             reason = error
             continue
         answer = Answer(seed, difficulty, attempt, truths, drawn.tables())
-        return Challenge(RecordingSet("challenge", rig_of(drawn), recordings), answer)
+        told = [replace(one, conditions={**one.conditions, **BY_CONTROL_LOOP}) for one in recordings]
+        return Challenge(RecordingSet("challenge", rig_of(drawn), told), answer)
     raise ExperimentError(
         f"none of {ATTEMPTS} joints of seed {seed} completes the protocol ({reason}); take another seed"
     )

@@ -51,9 +51,9 @@ def refine(fit: Fit, laws: Laws | None = None) -> Refinement:
     for count in range(1, MOST_PASSES + 1):
         try:
             along = _along(fit, now)
-        except UnusableDataError:  # the model's joint hardly moves: nothing to be learnt there
+            now = compare_coefficients(fit, along, laws)
+        except UnusableDataError:  # the model's joint hardly moves, or one of no inertia was found there
             return Refinement(refined, before, best, count)
-        now = compare_coefficients(fit, along, laws)
         if now.training.effort < best.training.effort:
             refined, best = along, now
         change = fit.columns[fit.training] @ (along.coefficients - last)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compensator.lab.closed_loop import refinement
 from compensator.lab.closed_loop.loop_comparison import compare_in_loop
 from compensator.lab.closed_loop.refinement import refine
 from compensator.lab.closed_loop.simulation import simulate
@@ -104,3 +105,12 @@ def test_where_nothing_is_gained_the_model_stays(fit):
         assert refined.after is refined.before
     else:
         assert refined.fit.coefficients == pytest.approx(fit.coefficients, rel=0.05, abs=0.01)
+
+
+def test_a_pass_that_finds_a_model_of_no_inertia_ends_it_with_the_best_so_far(fit, monkeypatch):
+    along = refinement._along(fit, compare_in_loop(fit))
+    still = with_coefficients(along, np.where(np.arange(len(along.coefficients)) < 2, 0.0, along.coefficients))
+    assert fit.names[0] == "inertia"
+    monkeypatch.setattr(refinement, "_along", lambda *_: still)
+    found = refine(fit)
+    assert (found.fit, found.passes) == (None, 1)

@@ -23,7 +23,7 @@ from tests.lab.diagnosis.test_diagnose import SHAKEN, late
 from tests.lab.synthetic import FACTS, Joint, Truth, plans, recordings
 
 LAG = "frictional_lag"
-EARLY_S = 0.006
+EARLY_S = 0.009
 
 
 def early(x: Truth) -> np.ndarray:
