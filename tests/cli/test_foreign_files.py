@@ -3,6 +3,7 @@
 import json
 from math import sin
 
+import numpy as np
 import pytest
 
 from tests.recording_set.foreign_files import FILES
@@ -53,6 +54,24 @@ def test_a_file_that_must_be_asked_about_is_not_explained(command, tmp_path):
     assert result.exit_code == 3
     assert "--counts-per-turn" in result.stderr
     assert json.loads(command("experiments", "--json").stdout) == []
+
+
+def test_how_many_effects_were_not_judged_is_said_beside_the_report(command, tmp_path):
+    random, files = np.random.default_rng(3), []
+    time_s = np.arange(0.0, 12.0, 0.005)
+    for sign in (1.0, -1.0):
+        for repeat in (1, 2):
+            speed = sign * 150.0 * (1.0 - np.exp(-time_s / 3.0))
+            torque = 1e-4 * np.gradient(speed, time_s) + 1e-4 * speed + 0.01 * sign
+            torque += 1e-4 * random.standard_normal(len(time_s))
+            files.append(tmp_path / f"turn{sign:+.0f}-{repeat}.csv")
+            rows = np.column_stack([time_s, np.cumsum(speed) * 0.005, torque])
+            np.savetxt(files[-1], rows, "%.7f", ",", header="time_s,position_rad,torque_n_m", comments="")
+    (tmp_path / "rig.toml").write_text('name = "free shaft"\nhorizontal = true\n')
+    result = command("explain", *files, "--rig", "rig.toml", "--name", "shaft", "--html", "shaft.html")
+    assert result.exit_code == 0, result.output
+    count = (tmp_path / "shaft.html").read_text().partition("What is left")[0].count("Not judged: ")
+    assert f"{count} effects were not judged: see the report." in result.stdout.replace("\n", " ")
 
 
 def test_a_joint_that_never_slid_is_reported_and_not_refused(command, tmp_path):

@@ -116,7 +116,8 @@ def _home(
     bench = session.configuration()
     if homing.settings_of(bench).method == "absolute":
         if not quiet:
-            say(session.in_full(doubt) or "The encoder keeps its count: nothing was moved, and the zero stays as it is.")
+            kept = "The encoder keeps its count: nothing was moved, and the zero stays as it is."
+            say(session.in_full(doubt) or kept)
         return not doubt
     narrow = homing.search_bench(bench, found.sample.position_rad)
     ended, _ = carry_out(session, homing.NAME, {}, operator, "friction-bench doctor --home", None, quiet, bench=narrow)
