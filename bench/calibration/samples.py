@@ -82,7 +82,7 @@ def _current_a(recording: Recording, rig: Rig) -> FloatArray:
     if resistance_ohm is None or back_emf_v_s_rad is None or rig.gear.ratio is None:
         raise CalibrationError(
             f"trial '{recording.name}' has no current, and rig '{rig.name}' lacks the motor.resistance_ohm and "
-            "motor.back_emf_v_s_rad that eq. (3) takes it from; add one or the other"
+            "motor.back_emf_v_s_rad that the paper's eq. (3) takes it from; add one or the other"
         )
     speed = np.gradient(_channel(recording, "position_rad"), _channel(recording, "time_s")) * rig.gear.ratio
     voltage_v = _channel(recording, "duty") * _channel(recording, "supply_v")

@@ -1,5 +1,7 @@
 """What the global options choose: the configuration, and the store that is open while a command runs."""
 
+import re
+import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -13,6 +15,8 @@ from bench.errors import ConfigurationError
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.config.configuration import BenchConfiguration
     from bench.store import Store
+
+_OF_A_BENCH = re.compile(r"friction-bench (?=doctor|drive )")  # commands that are about one bench, in a message
 
 
 @dataclass(frozen=True)
@@ -37,6 +41,12 @@ class BenchSession:
         """A configuration with the store that the options choose."""
         url = self._store_url(found.store.url)
         return found.model_copy(update={"store": found.store.model_copy(update={"url": url})})
+
+    def in_full(self, message: str) -> str:
+        """A message whose commands choose this bench: without its options they would go to the simulated one."""
+        chosen = [("--config", self.config), ("--store", self.store)]
+        options = "".join(f"{name} {shlex.quote(str(value))} " for name, value in chosen if value is not None)
+        return _OF_A_BENCH.sub(lambda found: found[0] + options, message)
 
     def store_url(self) -> str:
         """Where the trials are kept."""

@@ -11,6 +11,7 @@ from typing import Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from bench.cli.bench_session import session_of
 from bench.cli.commands import COMMANDS, CommandEntry
 from bench.cli.exit_codes import errors_as_messages
 
@@ -57,5 +58,9 @@ class CommandGroup(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command; errors of ours become a message and an exit code."""
-        with errors_as_messages():
+
+        def in_full(message: str) -> str:
+            return session_of(ctx).in_full(message) if ctx.find_root().obj is not None else message
+
+        with errors_as_messages(in_full):
             return super().invoke(ctx)

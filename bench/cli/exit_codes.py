@@ -1,6 +1,6 @@
 """Exit codes, and the one place where errors of ours become a message and a code."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from enum import IntEnum
 
@@ -47,10 +47,14 @@ def code_of(error: Exception) -> ExitCode:
 
 
 @contextmanager
-def errors_as_messages() -> Iterator[None]:
-    """Errors of ours become one message on stderr and an exit code; others are bugs and keep their traceback."""
+def errors_as_messages(in_full: Callable[[str], str]) -> Iterator[None]:
+    """Errors of ours become one message on stderr and an exit code; others are bugs and keep their traceback.
+
+    Args:
+        in_full: gives the commands in a message the options that they need.
+    """
     try:
         yield
     except (BenchError, DriveError, CompensatorError) as error:
-        complain(str(error))
+        complain(in_full(str(error)))
         raise typer.Exit(code_of(error)) from error

@@ -54,7 +54,7 @@ JOINT_CHANNELS = (
         "current_estimate_a",
         "A",
         "current from duty",
-        "motor current from duty and speed, eq. (3)",
+        "motor current from duty and speed, paper, eq. (3)",
         "reading.current_estimate_a",
         plotted=True,
     ),
@@ -110,7 +110,7 @@ MASTER_CHANNELS = (
         "master_current_estimate_a",
         "A",
         "master's current from duty",
-        "the master's motor current from duty and speed, eq. (3)",
+        "the master's motor current from duty and speed, paper, eq. (3)",
         "master.reading.current_estimate_a",
     ),
     Channel(

@@ -1,14 +1,15 @@
 """What pydantic found wrong, in words that name the place, the key, the value, what is allowed and the unit."""
 
 from collections.abc import Iterator
+from difflib import get_close_matches
 from typing import Any, get_args
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, Tag, ValidationError
 
 from bench.config.quantities import unit_of
 
 _SHOWN_CHARACTERS = 60
-_MOST_ALLOWED = 20  # keys that are listed
+_TAGGED = "tagged-"  # begins the name of a branch of a union in a location
 
 
 def problems(error: ValidationError, prefix: str = "", model: type[BaseModel] | None = None) -> list[str]:
@@ -28,9 +29,7 @@ def _problem(detail: Any, prefix: str, model: type[BaseModel] | None) -> str:
     name = str(location[-1]) if location else ""
     unit = unit_of(name)
     if detail["type"] == "extra_forbidden":
-        allowed = _allowed(model, detail["loc"]) if model is not None else []
-        listed = f" (allowed: {', '.join(allowed)})" if 0 < len(allowed) <= _MOST_ALLOWED else ""
-        return f"{key}: unknown key; remove it or correct its spelling{listed}"
+        return f"{key}: unknown key; {_instead(name, _allowed(model, detail['loc']) if model is not None else [])}"
     if detail["type"] == "missing":
         return f"{key}: missing; give a value{f' in {unit}' if unit else ''}"
     wanted = detail["msg"].removeprefix("Value error, ").removeprefix("Input ")
@@ -40,19 +39,36 @@ def _problem(detail: Any, prefix: str, model: type[BaseModel] | None) -> str:
     return f"{key}: found {_shown(detail.get('input'))}; {wanted}"
 
 
+def _instead(name: str, allowed: list[str]) -> str:
+    """What to do about an unknown key: the allowed one that is spelled most like it, and all of them."""
+    near = get_close_matches(name, allowed, 1)
+    advice = f"did you mean '{near[0]}'?" if near else "remove it or correct its spelling"
+    return f"{advice} (allowed: {', '.join(allowed)})" if allowed else advice
+
+
 def _allowed(model: type[BaseModel], location: tuple[int | str, ...]) -> list[str]:
     """The keys beside an unknown one; none where several shapes are possible there."""
-    here = [model]
+    here: list[Any] = [model]
     for part in location[:-1]:
-        inner = [
-            one
-            for outer in here
-            for name, field in outer.model_fields.items()
-            if part in (name, field.alias)
-            for one in _models_in(field.annotation)
-        ]
-        here = inner or here  # an index, or the key of a dictionary, leads no deeper
-    return [field.alias or name for name, field in here[0].model_fields.items()] if len(here) == 1 else []
+        here = [one for outer in here for one in _inside(outer, part)] or here  # an index leads no deeper
+    models = [one for annotation in here for one in _models_in(annotation)]
+    return [field.alias or name for name, field in models[0].model_fields.items()] if len(models) == 1 else []
+
+
+def _inside(annotation: Any, part: int | str) -> Iterator[Any]:
+    """Where a part of a location leads: to a field, or to the branch of a union that has this tag."""
+    if _has_tag(annotation, part):
+        yield annotation
+    elif isinstance(part, str) and part.startswith(_TAGGED):
+        for inner in get_args(annotation):
+            yield from _inside(inner, part)
+    else:
+        for model in _models_in(annotation):
+            yield from (field.annotation for name, field in model.model_fields.items() if part in (name, field.alias))
+
+
+def _has_tag(annotation: Any, tag: int | str) -> bool:
+    return any(isinstance(one, Tag) and one.tag == tag for one in getattr(annotation, "__metadata__", ()))
 
 
 def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
@@ -65,7 +81,7 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
 
 def _is_tag(part: Any) -> bool:
     """Whether a part of a location is pydantic's own, such as the name of a union's branch."""
-    return isinstance(part, str) and (part.startswith(("function-", "tagged-")) or "[" in part)
+    return isinstance(part, str) and (part.startswith(("function-", _TAGGED)) or "[" in part)
 
 
 def _shown(value: Any) -> str:

@@ -105,7 +105,7 @@ class ControlledJoint:
         if self._stand_in is _DUTY and self._current_servo is None:
             raise ConfigurationError(
                 f"{self.prefix}the drive has no current mode, and the rig lacks the resistance, back-EMF constant or "
-                "gear ratio that eq. (3) needs to do without; add them to the rig"
+                "gear ratio that the paper's eq. (3) needs to do without; add them to the rig"
             )
 
     def switch(self) -> bool:

@@ -72,8 +72,8 @@ class CurrentServo:
         resistance_ohm, back_emf_v_s_rad = rig.motor.resistance_ohm, rig.motor.back_emf_v_s_rad
         if resistance_ohm is None or back_emf_v_s_rad is None or rig.gear.ratio is None:
             raise ConfigurationError(
-                f"rig '{rig.name}': eq. (3) needs motor.resistance_ohm, motor.back_emf_v_s_rad and gear.ratio; "
-                "add what is missing to the rig"
+                f"rig '{rig.name}': the paper's eq. (3) needs motor.resistance_ohm, motor.back_emf_v_s_rad and "
+                "gear.ratio; add what is missing to the rig"
             )
         self._motor = MotorConstants(resistance_ohm, back_emf_v_s_rad)
         self._ratio = rig.gear.ratio

@@ -1,7 +1,7 @@
 """What every kind of experiment offers: parameters, a plan of trials, a refusal before motion, a summary."""
 
-from collections.abc import Callable, Generator
-from dataclasses import dataclass
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict
@@ -14,6 +14,10 @@ from drivers.contract import Mode
 
 AnyProcedure = Generator[Any, Any, dict[str, Value]]
 """Of one joint (`bench.control.cycle.Procedure`), or of a pair (`bench.control.pair.PairProcedure`)."""
+
+
+RESULTS_OF_ALL = {"cycles": "control cycles of the trial", "overruns": "of these, those that ended late"}
+"""Results that each trial has, whatever its kind."""
 
 
 class Parameters(BaseModel):
@@ -87,6 +91,7 @@ class ExperimentKind:
         summarise: results of the whole from those of its trials; JSON-able, units in the names.
         modes: that the drive has to close itself. Position is done without; a current by drives with a duty, too.
         adapt: the parameters as a drive of certain modes allows; raises nothing.
+        results: what the results of each trial are, by name; the reference prints them.
         pair: it moves a master and a slave; its procedures are those of `bench.control.pair`.
     """
 
@@ -100,6 +105,7 @@ class ExperimentKind:
     summarise: Callable[[Any, list[FinishedTrial]], dict[str, Value]]
     modes: Callable[[Any], frozenset[Mode]] = any_drive
     adapt: Callable[[Any, frozenset[Mode]], Any] = as_asked
+    results: Mapping[str, str] = field(default_factory=dict)
     pair: bool = False
 
 

@@ -60,7 +60,7 @@ def read_recording_set(
 
 def name_of_set(paths: Sequence[Path]) -> str:
     """The name of a set, told by where it is."""
-    first = paths[0]
+    first = paths[0].absolute()  # a name without a folder before it is in one, too
     return first.parent.name if len(paths) > 1 else first.stem if first.is_file() else first.name
 
 

@@ -66,7 +66,7 @@ def _effort(configuration: BenchConfiguration, drive: Description) -> str:
     if "torque_n_m" in drive.measured:
         return "the torque that it tells"
     known = "duty" in drive.measured and current_servo(configuration.rig) is not None
-    return "duty, speed and the rig's motor constants, eq. (3)" if known else ""
+    return "duty, speed and the rig's motor constants, paper, eq. (3)" if known else ""
 
 
 def _compensation(drive: Description, effort: str) -> Scope:

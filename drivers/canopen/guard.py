@@ -142,6 +142,7 @@ class Guard:
         """The drive no longer counts. Only with the power off."""
         for item, _ in reversed(self._watching()):
             self._table.set(item, 0, _PURPOSE)
+            self._table.note(item, Need.REQUIRED, _PURPOSE, True, self._off_words)
         self.armed = False
 
     def sign(self, now_s: float) -> None:
@@ -162,6 +163,11 @@ class Guard:
     def silences_heartbeat(self) -> bool:
         """Whether the drive answers requests instead of sending heartbeats of its own."""
         return self._kind is Kind.LIFE
+
+    @property
+    def _off_words(self) -> str:
+        """What an object is set to while nothing watches: a bare 0 would read as a watchdog that is off for good."""
+        return f"0 while the power is off; watches for {1000 * self._settings.watchdog_s:g} ms from switching on"
 
     def _watching(self) -> list[tuple[DriveObject, int]]:
         """The objects that make it watch, and their values."""

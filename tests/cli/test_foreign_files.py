@@ -3,8 +3,10 @@
 import json
 from math import sin
 
+import numpy as np
 import pytest
 
+from bench.recording_set import read_rig
 from tests.recording_set.foreign_files import FILES
 
 
@@ -17,6 +19,39 @@ def test_a_guess_is_shown_written_and_can_be_imported(command, tmp_path):
     assert json.loads(command("experiments", "--json").stdout) == []  # nothing is imported by a guess
     made = command("import", "log.csv", "--mapping", "mapping.toml", "--rig", "rig.toml", "--json")
     assert json.loads(made.stdout)["rows"] == 400
+
+
+def test_load_and_rig_are_told_by_what_a_guess_left_as_comments(command, tmp_path):
+    data = FILES["german excel, utf-8 mark"].data
+    for name in ("log1.csv", "log2.csv"):
+        (tmp_path / name).write_bytes(data)
+    guessed = command("import", "--guess", "log1.csv", "log2.csv")
+    assert guessed.exit_code == 0, guessed.output
+    assert "log2.csv: columns between ';'" in guessed.stdout
+    assert "/log2.csv" not in guessed.stdout
+    assert f'name = "{tmp_path.name}"' in (tmp_path / "rig.toml").read_text()
+    for name, remark in {
+        "mapping.toml": "all files are listed then.\n",
+        "rig.toml": "in numbers of your own:\n",
+    }.items():
+        head, found, keys = (tmp_path / name).read_text().partition(remark)
+        assert found
+        (tmp_path / name).write_text(head + found + keys.replace("# ", ""))
+    made = command("import", "log1.csv", "log2.csv", "--mapping", "mapping.toml", "--rig", "rig.toml", "--json")
+    assert made.exit_code == 0, made.output
+    trials = json.loads(command("trials", "--json").stdout)
+    assert [trial["conditions"] for trial in trials] == 2 * [{"load_kg": 0.1, "arm_m": 0.5}]
+    assert read_rig(tmp_path / "rig.toml").gear.ratio == 20
+
+
+def test_files_whose_columns_differ_are_guessed_one_by_one(command, tmp_path):
+    (tmp_path / "log1.csv").write_bytes(FILES["german excel, utf-8 mark"].data)
+    (tmp_path / "log2.csv").write_bytes(FILES["plain"].data.replace(b"time_s", b"clock"))
+    result = command("import", "--guess", "log1.csv", "log2.csv")
+    assert result.exit_code == 3
+    assert "log2.csv has other columns" in result.stderr.replace("\n", " ")
+    assert "guessed one by one" in result.stderr.replace("\n", " ")
+    assert not (tmp_path / "mapping.toml").exists()
 
 
 def test_what_is_not_sure_is_asked_and_nothing_is_written(command, tmp_path):
@@ -53,6 +88,24 @@ def test_a_file_that_must_be_asked_about_is_not_explained(command, tmp_path):
     assert result.exit_code == 3
     assert "--counts-per-turn" in result.stderr
     assert json.loads(command("experiments", "--json").stdout) == []
+
+
+def test_how_many_effects_were_not_judged_is_said_beside_the_report(command, tmp_path):
+    random, files = np.random.default_rng(3), []
+    time_s = np.arange(0.0, 12.0, 0.005)
+    for sign in (1.0, -1.0):
+        for repeat in (1, 2):
+            speed = sign * 150.0 * (1.0 - np.exp(-time_s / 3.0))
+            torque = 1e-4 * np.gradient(speed, time_s) + 1e-4 * speed + 0.01 * sign
+            torque += 1e-4 * random.standard_normal(len(time_s))
+            files.append(tmp_path / f"turn{sign:+.0f}-{repeat}.csv")
+            rows = np.column_stack([time_s, np.cumsum(speed) * 0.005, torque])
+            np.savetxt(files[-1], rows, "%.7f", ",", header="time_s,position_rad,torque_n_m", comments="")
+    (tmp_path / "rig.toml").write_text('name = "free shaft"\nhorizontal = true\n')
+    result = command("explain", *files, "--rig", "rig.toml", "--name", "shaft", "--html", "shaft.html")
+    assert result.exit_code == 0, result.output
+    count = (tmp_path / "shaft.html").read_text().partition("What is left")[0].count("Not judged: ")
+    assert f"{count} effects were not judged: see the report." in result.stdout.replace("\n", " ")
 
 
 def test_a_joint_that_never_slid_is_reported_and_not_refused(command, tmp_path):

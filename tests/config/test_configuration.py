@@ -34,7 +34,7 @@ def test_a_rig_may_stand_in_its_own_file(tmp_path):
 WRONG = [
     ("[limits]\nspeed_rad_s = -1", "limits.speed_rad_s: found -1; should be greater than 0 rad/s"),
     ("[limits]\nspeed_rad_s = 'fast'", "limits.speed_rad_s: found 'fast'; should be a valid number"),
-    ("[limits]\nspeed_rads = 1", "limits.speed_rads: unknown key"),
+    ("[limits]\nspeed_rads = 1", "limits.speed_rads: unknown key; did you mean 'speed_rad_s'? (allowed: "),
     ("[limits]\ncurrent_a = inf", "limits.current_a: found inf; should be a finite number"),
     ("[limits]\nposition_min_rad = 3", "limits: found"),
     ("[rig.arm]\ncentre_of_mass_m = nan", "rig.arm.centre_of_mass_m: found nan; should be a finite number"),

@@ -40,6 +40,15 @@ def watchdogs(folder):
         return [found.provenance["drive"]["watchdog"] for found in store.experiments()]
 
 
+def test_the_commands_that_are_named_are_those_of_this_bench(on_device):
+    """Pasted without --config they would go to the simulated bench of the paper."""
+    found = on_device("doctor").output.replace("\n", " ")
+    assert "'friction-bench --config bench.toml doctor --move'" in found
+    assert "'friction-bench --config bench.toml doctor --set-zero'" in found
+    refused = on_device("run", "steps", "--repeats", "1").output.replace("\n", " ")
+    assert "run 'friction-bench --config bench.toml doctor --move'" in refused
+
+
 def test_what_doctor_has_seen_is_in_the_record_of_each_run_after(on_device, tmp_path):
     found = on_device("doctor", "--move")
     assert found.exit_code == 0, found.output

@@ -97,6 +97,12 @@ def test_the_loads_of_table_1_were_not_those_of_the_calibration(store, rows):
     assert swept.provenance["configuration"]["friction"]["calibration_id"] is not None
 
 
+def test_the_angle_is_said_where_nothing_is_reflected_and_where_all_is(rows):
+    said = {row.name: row.section.sentences[0] for row in rows}
+    assert said["fig-7"].startswith("At 0 degrees nothing is to be reflected. ")
+    assert said["fig-9"].startswith("At 90 degrees, uncompensated, the current lies anywhere from ")
+
+
 def test_the_report_holds_every_number_and_asks_nothing_of_the_network(rows, tmp_path):
     write_html(tmp_path / "paper.html", "the paper", [summary(rows), *(row.with_source() for row in rows)])
     page = (tmp_path / "paper.html").read_text(encoding="utf-8")

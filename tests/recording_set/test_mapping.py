@@ -121,7 +121,7 @@ BAD: dict[str, tuple[str, str]] = {
     "unknown key": ('colums = "x"\n', "mapping.toml, line 1: colums: unknown key"),
     "unknown key of a column": (
         '[columns.position_rad]\nfrom = "x"\nunits = "deg"\n',
-        "mapping.toml, line 3: columns.position_rad.units: unknown key; remove it or correct its spelling "
+        "mapping.toml, line 3: columns.position_rad.units: unknown key; did you mean 'unit'? "
         "(allowed: from, scale, offset, unit, period, sign_from)",
     ),
     "signs the same": ('delimiter = ","\ndecimal = ","\n', "delimiter and decimal are both ','"),

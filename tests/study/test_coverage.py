@@ -10,8 +10,9 @@ from bench.recording_set import import_recording_set
 from bench.recording_set.recording_set import RecordingSet
 from bench.store import Store
 from bench.study.create import create_study
+from bench.study.diagnose import diagnose
 from bench.study.errors import StudyError
-from bench.study.explanation.coverage import LOADS, RAMPS, REPEAT, WARMTH, coverage
+from bench.study.explanation.coverage import LOADS, RAMPS, REPEAT, REVERSALS, WARMTH, coverage
 from bench.study.explanation.explain import STEPS, explain
 from bench.study.models.coverage import Coverage
 from compensator.lab.recordings.recording import FloatArray, Recording
@@ -91,6 +92,20 @@ def test_a_shaft_that_turns_on_has_no_spring(store: Store) -> None:
     assert "turns on" in lacking(found, "position")
     spring = next(one for one in found.effects if one.effect == "spring")
     assert (spring.standing, "shaft turns on" in spring.reason) == ("not measured", True)
+
+
+def test_what_a_diagnosis_does_not_judge_cannot_be_judged_before_it(store: Store) -> None:
+    """Both count the rows near reversals, and the starts from rest, by the same rule."""
+    found = shaft(store, (1.0, -1.0))
+    last = diagnose(store, found.study_id)
+    not_judged = {str(one.values["effect"]): one.text for one in last.findings if one.code == "not-judged"}
+    by_name = {one.effect: one for one in found.effects}
+    assert "rows lie near one, wanted 40" in not_judged["backlash"]
+    assert not set(not_judged) & {one.effect for one in found.effects if one.standing == "judgeable"}
+    for name in ("backlash", "elasticity", "pre_sliding", "rate_dependent_breakaway"):
+        assert by_name[name].standing == "not measured"
+        assert by_name[name].reason in not_judged[name]
+    assert REVERSALS in [one.trial for one in found.advice]
 
 
 def test_an_effect_that_hides_and_effects_that_look_alike(store: Store) -> None:

@@ -90,14 +90,13 @@ def _as_json(results: "list[Result]", seed: int, plants: int) -> dict[str, objec
 def _print(results: "list[Result]") -> None:
     from bench.evaluation.blind.confusion import confusions, rival_figures
     from bench.evaluation.blind.figures import figures
+    from bench.evaluation.blind.pictures import RIVAL_COLUMNS
 
-    rows = [
-        (one.what, one.asked, _measured(one), one.items, "yes" if one.reached else "no") for one in figures(results)
-    ]
+    rows = [(one.what, one.asked, _measured(one), one.items, _reached(one)) for one in figures(results)]
     table("Asked and measured", ["what", "asked", "measured (95 %)#", "items#", "reached"], rows)
     table(
         "What is answered to what",
-        ["hidden", "in the catalogue", "items#", "d' >= 6#", "of these right#", "first answers"],
+        ["hidden", "in the catalogue", "items#", "d' >= 6#", "of these right#", "first answers, flags not counted"],
         [
             (
                 one.truth,
@@ -112,7 +111,7 @@ def _print(results: "list[Result]") -> None:
     )
     table(
         "The same items, the same columns",
-        ["method", "false alarms#", "named first where d' >= 6#"],
+        RIVAL_COLUMNS,
         [(one.name, _percent(one.false_alarm), _percent(one.named_first)) for one in rival_figures(results)],
     )
     _print_calibration(results)
@@ -148,6 +147,10 @@ def _quartiles(one: "Came") -> str:
 
 def _number(value: float) -> str:
     return "-" if math.isnan(value) else f"{value:.1f}"
+
+
+def _reached(one: "Figure") -> str:
+    return ("yes" if one.reached else "no") if one.is_told else "-"
 
 
 def _measured(one: "Figure") -> str:

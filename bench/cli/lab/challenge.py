@@ -118,7 +118,7 @@ def _print(answer: "Answer", guess: "Guess | None", score: "Score | None") -> No
 
 
 def _print_score(score: "Score") -> None:
-    from bench.evaluation.challenge.names import RECORDED
+    from bench.evaluation.challenge.names import ACCEPTED, RECORDED, accepted
 
     sizes = ", ".join(map(str, score.class_sizes))
     lines = [
@@ -129,8 +129,9 @@ def _print_score(score: "Score") -> None:
         ("false", score.wrong, ""),
     ]
     for word, names, note in lines:
-        if names:
-            say(f"{word}: {', '.join(names)}{note}")
+        if names:  # as the catalogue calls them; a mechanism outside of it has its own name only
+            called = (" or ".join(accepted(one)) or one if one in ACCEPTED else one for one in names)
+            say(f"{word}: {', '.join(called)}{note}")
     say("All of it, and nothing else." if score.perfect else "Not all of it, or more than it.")
 
 

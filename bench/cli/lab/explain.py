@@ -89,6 +89,8 @@ def explain(
     )
     for sentence in found.sentences:
         say(sentence)
+    if count := len(found.not_judged):
+        say(f"{count} {'effect was' if count == 1 else 'effects were'} not judged: see the report.")
     say(f"written: {report}; kept as study {found.study_id}")
 
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from drivers.contract import Description
 
 _VERDICTS = {"proven": "proven", "configured, not proven": "NOT PROVEN", "none": "DOES NOT STOP IT"}
+_NEXT = "Nothing was powered. 'friction-bench doctor --move' checks signs and scales with a small move."
 QUANTITIES = ("position_rad", "velocity_rad_s", "duty", "current_a", "supply_v", "temperature_c")
 
 
@@ -49,14 +50,14 @@ def doctor(
     found = connect(session.configuration())
     doubt = _count_doubt(session, found)
     if not as_json:
-        _show(found)
+        _show(session, found)
     if doubt and not as_json and not set_zero and not home:
-        say(doubt)
+        say(session.in_full(doubt))
     if set_zero:
         _set_zero(session, found.sample.position_rad - radians(at_deg), as_json)
     scope = scope_of(session.configuration(), found.description)
     if not as_json:
-        _show_scope(scope)
+        _show_scope(session, scope)
     answer: dict[str, object] = {
         "connection": _represent(found), "count_doubt": doubt, "scope": [one._asdict() for one in scope],
     }  # fmt: skip
@@ -66,7 +67,7 @@ def doctor(
     elif home:
         pass
     elif not as_json:
-        say("Nothing was powered. 'friction-bench doctor --move' checks signs and scales with a small move.")
+        say(session.in_full(_NEXT))
     if as_json:
         print_json(answer)
     if not passed:
@@ -115,7 +116,8 @@ def _home(
     bench = session.configuration()
     if homing.settings_of(bench).method == "absolute":
         if not quiet:
-            say(doubt or "The encoder keeps its count: nothing was moved, and the zero stays as it is.")
+            kept = "The encoder keeps its count: nothing was moved, and the zero stays as it is."
+            say(session.in_full(doubt) or kept)
         return not doubt
     narrow = homing.search_bench(bench, found.sample.position_rad)
     ended, _ = carry_out(session, homing.NAME, {}, operator, "friction-bench doctor --home", None, quiet, bench=narrow)
@@ -140,7 +142,7 @@ def _move(session: BenchSession, operator: str, answer: dict[str, object], quiet
     return ended.outcome == "completed"
 
 
-def _show(found: "Connection") -> None:
+def _show(session: BenchSession, found: "Connection") -> None:
     description = found.description
     table("Drive", ["what", "value"], [
         ("device", description.device),
@@ -164,14 +166,15 @@ def _show(found: "Connection") -> None:
     ])  # fmt: skip
     if found.torque_off:
         say(found.torque_off)
-    say(
+    standing = (
         f"The joint stands at {degrees(found.sample.position_rad):.2f} degrees. Where the arm hangs straight down now, "
         "'friction-bench doctor --set-zero' makes that 0."
     )
+    say(session.in_full(standing))
 
 
-def _show_scope(scope: "tuple[Scope, ...]") -> None:
-    rows = [(one.what, one.answer.value, one.why) for one in scope]
+def _show_scope(session: BenchSession, scope: "tuple[Scope, ...]") -> None:
+    rows = [(one.what, one.answer.value, session.in_full(one.why)) for one in scope]
     table("What can be compensated here, and what cannot", ["what", "", "why"], rows)
 
 

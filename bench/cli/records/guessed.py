@@ -51,7 +51,7 @@ def write_guess(guess: "Guess", rig: "Rig | None", mapping_file: Path, rig_file:
     from bench.recording_set.guess import mapping_text, rig_text
 
     head = ("written by friction-bench import --guess; read it before you use it", *guess.notes)
-    write_whole(mapping_file, [mapping_text(guess.mapping, head).encode()])
+    write_whole(mapping_file, [mapping_text(guess.mapping, head, guess.files).encode()])
     say(f"written: {mapping_file}")
     if rig is not None:
         write_whole(rig_file, [rig_text(rig).encode()])

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import nan
+from math import isnan, nan
 
 import numpy as np
 
@@ -37,6 +37,11 @@ class Figure:
     items: int
     reached: bool
     is_share: bool = True
+
+    @property
+    def is_told(self) -> bool:
+        """Whether any item tells it: what was not asked is neither reached nor missed."""
+        return not isnan(self.measured)
 
 
 def figures(results: Sequence[Result]) -> list[Figure]:
@@ -92,7 +97,7 @@ def _gain_over_chance(answered: Sequence[Result]) -> Figure:
 def _false_alarms(answered: Sequence[Result]) -> list[Figure]:
     families = {"complete": 0.02, "imperfect": 0.05, "at-rest": 0.02}
     words = {
-        "complete": "false alarms, complete models",
+        "complete": "false alarms, complete models (a name or a flag)",
         "imperfect": "the same, with delay, jitter, lost rows",
         "at-rest": "the same as the first, with starts from rest and reversals recorded",
     }

@@ -18,6 +18,8 @@ from bench.evaluation.blind.result import Result
 from bench.report.html import write_html
 from bench.report.section import Figure, Line, Points, Section, Table
 
+RIVAL_COLUMNS = ("method", "false alarms by first answer, flags not counted#", "named first where d' >= 6#")
+
 
 def write_page(path: Path, results: Sequence[Result], command: str) -> None:
     """Write the page of a run; `command` is what it was had by."""
@@ -29,16 +31,19 @@ def sections_of(results: Sequence[Result], command: str) -> list[Section]:
     found, by_d_prime = p_values(results), names_by_detectability(results)
     settled, came = named_by_prediction(results), came_of_prediction(results)
     measured = [
-        (one.what, one.asked, _number(one.measured), _number(one.low), _number(one.high), one.items, one.reached)
+        (
+            one.what, one.asked, _number(one.measured), _number(one.low), _number(one.high), one.items,
+            one.reached if one.is_told else None,
+        )
         for one in figures(results)
-    ]
+    ]  # fmt: skip
     methods = [(one.name, _number(one.false_alarm), _number(one.named_first)) for one in rival_figures(results)]
     columns = ("what", "asked", "measured#", "from#", "to#", "items#", "reached")
     return [
         Section("Asked and measured", (command,), (Table("95 % intervals", columns, measured),)),
         Section(
             "The same items, the same columns",
-            tables=(Table("Methods", ("method", "false alarms#", "named first where d' >= 6#"), methods),),
+            tables=(Table("Methods", RIVAL_COLUMNS, methods),),
         ),
         Section("Stated and observed", tables=(_table(found), _table(by_d_prime)), figures=_plots(found, by_d_prime)),
         Section("Predicted, and as it came", tables=(_table(settled), _came_table(came)), figures=[_came_plot(came)]),

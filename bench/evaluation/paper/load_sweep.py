@@ -21,9 +21,10 @@ def fig_7(experiment: Experiment, trials: Sequence[Trial], grams_per_ma: float) 
     section = Section(
         title="Fig. 7: at angle 0, load after load",
         sentences=[
-            f"Nothing is to be reflected. Uncompensated, the joint stands with anything within {band_ma:.0f} mA either "
-            f"way (paper: about {FIG_7['largest_uncompensated_ma']:.0f} mA), growing with the load; compensated, with "
-            f"{compensated_ma:.1f} mA at most, which is {compensated_ma * grams_per_ma:.2f} g at 90 degrees."
+            "At 0 degrees nothing is to be reflected. Uncompensated, the joint stands with anything within "
+            f"{band_ma:.0f} mA either way (paper: about {FIG_7['largest_uncompensated_ma']:.0f} mA), growing with the "
+            f"load; compensated, with {compensated_ma:.1f} mA at most, which is {compensated_ma * grams_per_ma:.2f} g "
+            "at 90 degrees."
         ],
         figures=[_envelope(found, "Current at angle 0")],
     )
@@ -40,8 +41,9 @@ def fig_9(experiment: Experiment, trials: Sequence[Trial]) -> Row:
     section = Section(
         title="Fig. 9: at 90 degrees, load after load",
         sentences=[
-            f"Uncompensated, the current lies anywhere from {ours['lowest_ma']:.0f} to {ours['highest_ma']:.0f} mA "
-            f"(paper: {FIG_9['lowest_ma']:.0f} to {FIG_9['highest_ma']:.0f} mA); compensated, on a straight line."
+            f"At 90 degrees, uncompensated, the current lies anywhere from {ours['lowest_ma']:.0f} to "
+            f"{ours['highest_ma']:.0f} mA (paper: {FIG_9['lowest_ma']:.0f} to {FIG_9['highest_ma']:.0f} mA); "
+            "compensated, on a straight line."
         ],
         figures=[_envelope(found, "Current at 90 degrees")],
     )

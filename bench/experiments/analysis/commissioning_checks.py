@@ -75,7 +75,7 @@ def check_friction(pushes: Sequence[Push]) -> Finding:
     """There and back over one way: the measured currents differ by friction, which has the sign of the motion."""
     there_a, back_a = (_column(_moving(push.driven), "current_a") for push in pushes)
     if np.isnan([*there_a, *back_a]).any():
-        return Finding("current", None, "the drive measures no current; it is estimated by eq. (3)")
+        return Finding("current", None, "the drive measures no current; it is estimated by the paper's eq. (3)")
     means = float(np.mean(there_a)), float(np.mean(back_a))
     text = f"measured current: {means[0]:+.3g} A on the way there, {means[1]:+.3g} A on the way back"
     noise_a = float(np.hypot(np.std(there_a) / np.sqrt(len(there_a)), np.std(back_a) / np.sqrt(len(back_a))))
@@ -116,7 +116,7 @@ def check_current(pushes: Sequence[Push]) -> Finding:
     """The measured current has the sign of the acceleration that it makes."""
     currents_a = [float(np.mean(_column(push.driven, "current_a"))) for push in pushes]
     if np.isnan(currents_a).any():
-        return Finding("current", None, "the drive measures no current; it is estimated by eq. (3)")
+        return Finding("current", None, "the drive measures no current; it is estimated by the paper's eq. (3)")
     text = ", ".join(
         f"{current_a:+.3g} A while the joint went {push.travel_rad:+.3g} rad"
         for current_a, push in zip(currents_a, pushes, strict=True)

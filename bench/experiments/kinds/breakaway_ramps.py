@@ -220,5 +220,11 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    results={
+        "breakaways": "of each ramp: direction; stood_s, how long the joint had stood; current_a in the last cycle "
+        "before slip; onset_current_a in the cycle of the first motion; ramp_s and slip_s, from the start of the ramp "
+        "and of the trial; travel_before_slip_rad; travel_rad to the end of the ramp. Null without slip",
+        "search_ceiling_a": "highest current of the bench's own search, beside which breakaway is seen",
+    },
     modes=a_current,
 )

@@ -16,6 +16,7 @@ from bench.experiments.parts.injection import (
     refuse_injection,
     summarise_injection,
 )
+from bench.experiments.parts.signal_play import PLAYED_RESULTS
 from bench.experiments.parts.waveforms import fade
 
 
@@ -61,5 +62,6 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=summarise_injection,
+    results=PLAYED_RESULTS,
     modes=ChirpParameters.modes,
 )

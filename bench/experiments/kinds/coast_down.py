@@ -196,5 +196,14 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    results={
+        "released_speed_rad_s": "speed at which the current was taken away",
+        "coast_s": "time of the coast",
+        "way_rad": "its way",
+        "came_to_rest": "whether it ended at rest",
+        "dry_deceleration_rad_s2": "dry friction over inertia; null where it is not known",
+        "time_constant_s": "inertia over viscous friction; null where it is not known",
+        "fit_rms_rad": "what the fit of both leaves, root mean square",
+    },
     modes=_modes,
 )

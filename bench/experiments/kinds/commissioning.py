@@ -128,5 +128,11 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=results_of_the_trial,
+    results={
+        "travel_rad": "of each push",
+        "passed": "what is as the rig says",
+        "not_checked": "what the drive does not measure",
+        "sentences": "what was found, in words",
+    },
     adapt=_adapt,
 )

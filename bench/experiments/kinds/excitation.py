@@ -119,4 +119,9 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    results={
+        "rms_tracking_error_rad": "root mean square of position less set point",
+        "peak_speed_rad_s": "highest speed",
+        "peak_current_a": "highest current",
+    },
 )

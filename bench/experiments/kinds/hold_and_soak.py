@@ -210,4 +210,11 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    results={
+        "friction_current_a": "of a probe: half the difference of the currents forward and backward",
+        "load_current_a": "of a probe: half their sum",
+        "temperature_c": "of the drive, at the end",
+        "soaked_s": "of a soak: how long it held or moved",
+        "rms_current_a": "of a soak: root mean square of the current",
+    },
 )

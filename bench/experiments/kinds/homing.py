@@ -235,4 +235,9 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=results_of_the_trial,
+    results={
+        "stops_rad": "where the end stop was found, each time",
+        "way_rad": "how far the joint went, where the drive searched",
+        OFF_RAD: "what `drive.zero_rad` has to grow by",
+    },
 )

@@ -15,6 +15,7 @@ from bench.experiments.parts.injection import (
     refuse_injection,
     summarise_injection,
 )
+from bench.experiments.parts.signal_play import PLAYED_RESULTS
 from bench.experiments.parts.waveforms import FADE_S, fade
 from bench.json_types import Value
 
@@ -88,5 +89,6 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    results=PLAYED_RESULTS,
     modes=MultisineParameters.modes,
 )

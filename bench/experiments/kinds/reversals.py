@@ -173,4 +173,11 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    results={
+        "strokes": "strokes of the trial",
+        "reached_rad": "amplitude that was reached, mean",
+        "friction_current_a": "half the difference of the currents forward and backward",
+        "load_current_a": "half their sum",
+        "rms_tracking_error_rad": "root mean square of position less set point",
+    },
 )

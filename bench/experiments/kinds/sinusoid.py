@@ -7,7 +7,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.control.cycle import Procedure
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
-from bench.experiments.parts.followed_motion import FollowedJoint, errors, refuse_unknown_joint
+from bench.experiments.parts.followed_motion import ERROR_RESULTS, FollowedJoint, errors, refuse_unknown_joint
 from bench.experiments.parts.profile import SetPoint
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
 from bench.json_types import Value, number, numbers
@@ -103,5 +103,6 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    results=ERROR_RESULTS,
     modes=a_current,
 )

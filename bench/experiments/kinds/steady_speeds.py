@@ -10,7 +10,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.control.cycle import Procedure
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
-from bench.experiments.parts.followed_motion import Followed, FollowedJoint, errors, refuse_unknown_joint
+from bench.experiments.parts.followed_motion import ERROR_RESULTS, Followed, FollowedJoint, errors, refuse_unknown_joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
 from bench.json_types import Value, numbers
@@ -165,5 +165,10 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    results={
+        **ERROR_RESULTS,
+        "forward_mean_error_kg": "mean error of the estimate, forward",
+        "backward_mean_error_kg": "mean error of the estimate, backward",
+    },
     modes=a_current,
 )

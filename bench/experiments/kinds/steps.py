@@ -9,7 +9,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.reflected_load import reflected_load_kg
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
-from bench.experiments.parts.at_rest import RIGHT_ANGLE_RAD, duration_s, measure_at_rest
+from bench.experiments.parts.at_rest import AT_REST_RESULTS, RIGHT_ANGLE_RAD, duration_s, measure_at_rest
 from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
 from bench.json_types import Value, numbers
 
@@ -111,5 +111,6 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    results=AT_REST_RESULTS,
     modes=a_current,
 )

@@ -11,7 +11,7 @@ from bench.errors import LimitError, ParameterError
 from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.injection import RESTS_S, summarise_injection
 from bench.experiments.parts.refusal import refuse_load
-from bench.experiments.parts.signal_play import MODES, Signal, play, refuse_signal
+from bench.experiments.parts.signal_play import MODES, PLAYED_RESULTS, Signal, play, refuse_signal
 from bench.experiments.parts.waveform_csv import Waveform, read_waveform
 from bench.json_types import Value
 from drivers.contract import Mode
@@ -103,5 +103,6 @@ KIND = ExperimentKind(
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,
+    results=PLAYED_RESULTS,
     modes=_modes,
 )

@@ -13,11 +13,32 @@ from bench.json_types import Value
 SEARCH_S = {"paper": 6.0, "improved": 2.5}  # of one search, roughly
 MOVES_S = 3.0  # to the angle and back, roughly
 RIGHT_ANGLE_RAD = pi / 2
-_NAMES = (
-    "min_current_a", "max_current_a", "load_current_a", "friction_current_a", "load_currents_a", "load_interval_a",
-    "friction_interval_a", "arm_angle_rad", "reflected_load_kg", "reflected_interval_kg", "breakaways", "search_s",
-    "search_travel_rad",
-)  # fmt: skip
+_STEADY = {
+    "steady_current_a": "uncompensated, as the position servo happened to leave it (Fig. 4 of the paper)",
+    "steady_position_rad": "where the joint stood then",
+}
+_SEARCHED = {
+    "min_current_a": "at which the joint just gives way backwards, which is down at 90 degrees; mean of all searches",
+    "max_current_a": "at which the joint just gives way forwards, which is up at 90 degrees; mean of all searches",
+    "load_current_a": "of the load alone, I_load: half the sum of these two (paper, eq. 9); corrected where known "
+    "loads have told how",
+    "friction_current_a": "friction at that load, F_load: half their difference (paper, eq. 10); corrected likewise",
+    "load_currents_a": "of the load alone, by each search",
+    "load_interval_a": "95 %, [low, high] of `load_current_a`; null where the searches do not tell",
+    "friction_interval_a": "95 %, [low, high] of `friction_current_a`; null where the searches do not tell",
+    "arm_angle_rad": "of the arm behind the free play during the searches, as far as the sensor before it tells",
+    "reflected_load_kg": "what the current of the load amounts to at that angle; null near angle 0",
+    "reflected_interval_kg": "95 %, [low, high] of it",
+    "breakaways": "of each breakaway: direction (1, -1), current [A], rate of the current [A/s], position [rad]",
+    "search_s": "time of one search, mean",
+    "search_travel_rad": "motion of one search, mean",
+}
+AT_REST_RESULTS = {
+    **_STEADY,
+    **_SEARCHED,
+    "search_failure": "why there is no estimate; empty where there is one. Without it, all but the first two are null",
+}
+"""What the results of a trial at rest are."""
 
 
 def duration_s(configuration: BenchConfiguration, searches: int) -> float:
@@ -37,17 +58,7 @@ def measure_at_rest(
             comes to rest; the mean is not.
         approach_rad_s: speed of the way there; that of the configuration where None.
 
-    Results:
-        steady_current_a: uncompensated, as the position servo happened to leave it (Fig. 4).
-        min_current_a, max_current_a: at which the joint just moved, mean of all searches.
-        load_current_a, friction_current_a: eqs (9), (10), from all searches; corrected where known loads have told how.
-        load_currents_a: eq. (9) of each search.
-        load_interval_a, friction_interval_a: 95 %, [low, high]; None where the searches do not tell.
-        arm_angle_rad: of the arm behind the free play during the searches, as far as the sensor before it tells.
-        reflected_load_kg: what the load current amounts to at that angle; None near angle 0. With its interval.
-        breakaways: [direction, current_a, rate_a_s, position_rad] of each.
-        search_s, search_travel_rad: time and motion of one search, mean.
-        search_failure: why there is no estimate; "" where there is. Without one all but the first two are None.
+    Results: `AT_REST_RESULTS`.
     """
     joint = Joint(configuration)
     yield from joint.wake()
@@ -70,7 +81,7 @@ def measure_at_rest(
 
 
 def _no_estimate(failure: str) -> dict[str, Value]:
-    return {**dict.fromkeys(_NAMES), "search_failure": failure}
+    return {**dict.fromkeys(_SEARCHED), "search_failure": failure}
 
 
 def _estimate(found: list[Found], steady_rad: float, configuration: BenchConfiguration) -> dict[str, Value]:
@@ -92,7 +103,7 @@ def _estimate(found: list[Found], steady_rad: float, configuration: BenchConfigu
         sum(one.seconds for one in found) / len(found),
         sum(one.travel_rad for one in found) / len(found),
     )
-    return {**dict(zip(_NAMES, values, strict=True)), "search_failure": ""}
+    return {**dict(zip(_SEARCHED, values, strict=True)), "search_failure": ""}
 
 
 def _reflected_interval(whole: RestFinding, angle_rad: float, configuration: BenchConfiguration) -> list[float] | None:

@@ -90,6 +90,25 @@ def errors(followed: Sequence[Followed], load_kg: float, configuration: BenchCon
     return found
 
 
+def _error_results() -> dict[str, str]:
+    sizes = {"mean": "mean", "mean_absolute": "mean absolute", "rms": "root mean square"}
+    of = {"": "of the estimate", "uncompensated_": "of the plain current, taken for that of the load"}
+    return {
+        f"{prefix}{name}_error_kg": f"{size} error {what}"
+        for prefix, what in of.items()
+        for name, size in sizes.items()
+    }
+
+
+ERROR_RESULTS = {
+    "estimates": "cycles with an estimate",
+    "in_band": "share of the cycles in which the 95 % band holds the load",
+    **_error_results(),
+    "search_failure": "why the load was not found at the beginning; empty where it was",
+}
+"""What the results of a trial are that estimates the load in motion."""
+
+
 def refuse_unknown_joint(configuration: BenchConfiguration) -> None:
     """Raise `ConfigurationError` where the load cannot be estimated in motion."""
     torque_n_m_a(configuration.rig)

@@ -20,6 +20,16 @@ from drivers.contract import Command, Mode
 FloatArray = NDArray[np.float64]
 Quantity = Literal["position_rad", "current_a", "duty"]
 OVERSHOOT_RAD = 0.1  # of the servo, at most
+PLAYED_RESULTS = {
+    "played_s": "how long the signal was played",
+    "travel_rad": "from the lowest to the highest position",
+    "peak_speed_rad_s": "highest speed",
+    "peak_current_a": "highest current",
+    "rms_current_a": "root mean square of the current",
+    "rms_tracking_error_rad": "root mean square of position less set point, where a position is followed",
+    "ended_early": "why the signal was not played to its end; empty where it was",
+}
+"""What the results of a trial are that plays a signal."""
 MODES = {"current_a": Mode.CURRENT, "duty": Mode.DUTY}
 
 

@@ -1,5 +1,6 @@
 """From the tables of an unknown bench to a mapping: which column is which channel, in which unit, and why."""
 
+import json
 from collections.abc import Mapping as MappingOf
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,11 +22,12 @@ EFFORTS = ("torque", "force", "current", "voltage", "duty")
 
 @dataclass(frozen=True)
 class Sheet:
-    """The columns of one file. Attributes: its place, columns, and what it says of the sampling rate [Hz]."""
+    """The columns of one file. Attributes: its place, columns, what it says of the sampling rate [Hz], and its name."""
 
     place: str
     columns: Columns
     rate_hz: float | None = None
+    file: str = ""
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,7 @@ class Guess:
         taken: every column, in the order of the file.
         questions: what a person has to say first; each names its option.
         notes: what was found besides.
+        files: that hold a trial each.
     """
 
     mapping: Mapping
@@ -67,6 +70,7 @@ class Guess:
     taken: tuple[Taken, ...]
     questions: tuple[str, ...]
     notes: tuple[str, ...]
+    files: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -116,8 +120,28 @@ def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
         notes.append("no column is a position: it is the integral of the speed, from 0 in each trial")
     taken = tuple(_taken(name, columns, units, assigned) for name in assigned.names)
     unsigned = magnitude_questions([sheet.columns for sheet in sheets], assigned)
-    questions = (*assigned.questions, *units.questions, *unsigned, *_missing(assigned, known, rate_hz))
-    return Guess(mapping, "linear" if units.joint == "linear" else "rotary", taken, questions, tuple(notes))
+    missing = _missing(assigned, known, rate_hz)
+    questions = (*assigned.questions, *units.questions, *unsigned, *missing, *_other_columns(sheets, assigned))
+    joint: Literal["rotary", "linear"] = "linear" if units.joint == "linear" else "rotary"
+    return Guess(mapping, joint, taken, questions, tuple(notes), tuple(sheet.file for sheet in sheets))
+
+
+def _other_columns(sheets: Sequence[Sheet], assigned: Assigned) -> list[str]:
+    """Files that the columns of the others do not read: one mapping would refuse them."""
+    groups = (("time",), ("position", "velocity"), EFFORTS)
+    wanted = [[name for name in group if name in assigned.columns] for group in groups]
+    return [
+        f"{sheet.place} has other columns than the others ({', '.join(list(sheet.columns)[:20])}): files whose columns "
+        "differ are guessed one by one, each with a --mapping of its own"
+        for sheet in sheets
+        if any(group and not any(_has(sheet, name, assigned.columns[name]) for name in group) for group in wanted)
+    ]
+
+
+def _has(sheet: Sheet, quantity: str, names: tuple[str, ...]) -> bool:
+    """Whether a file has the columns of a quantity, or one that needs no mapping."""
+    own = [name for name in sheet.columns if name in CHANNELS and name.partition("_")[0] == quantity]
+    return bool(own) or all(name in sheet.columns for name in names)
 
 
 def _missing(assigned: Assigned, known: Known, rate_hz: float | None) -> list[str]:
@@ -155,15 +179,42 @@ def _taken(name: str, columns: MappingOf[str, Column], units: Units, assigned: A
     return Taken(name, "", "", low, high, assigned.unused.get(name) or "it is asked about", outline)
 
 
-def mapping_text(mapping: Mapping, notes: tuple[str, ...] = ()) -> str:
-    """The text of a mapping.toml: what differs from the defaults, with remarks at its head."""
+def mapping_text(mapping: Mapping, notes: tuple[str, ...] = (), files: Sequence[str] = ()) -> str:
+    """The text of a mapping.toml: what differs from the defaults, with remarks at its head.
+
+    Args:
+        mapping: of the columns.
+        notes: the remarks.
+        files: that hold a trial each; of these a comment at the end shows how load and arm are told.
+    """
     values = mapping.model_dump(mode="json", by_alias=True, exclude_defaults=True, exclude_none=True)
     plain = {name: value for name, value in values.items() if not isinstance(value, dict | list)}
     tables = {name: value for name, value in values.items() if name not in plain}
     head = "".join(f"# {note}\n" for note in notes)
-    return head + tomli_w.dumps(plain | tables)
+    return head + tomli_w.dumps(plain | tables) + _conditions_comment(files)
+
+
+def _conditions_comment(files: Sequence[str]) -> str:
+    if not files:
+        return ""
+    names = [json.dumps(file, ensure_ascii=False) for file in files]
+    blocks = [f"# [[trials]]\n# file = {name}\n# conditions = {{ load_kg = 0.1, arm_m = 0.5 }}\n" for name in names]
+    return "\n# Load and arm of each trial, where they are known: all files are listed then.\n" + "".join(blocks)
+
+
+RIG_COMMENT = """
+# What is known of motor, gear and arm, in numbers of your own:
+# [motor]
+# torque_constant_n_m_a = 0.05
+# [gear]
+# ratio = 20
+# [arm]
+# length_m = 0.5
+"""
 
 
 def rig_text(rig: Rig) -> str:
-    """The text of a rig.toml, as far as the rig is known."""
-    return tomli_w.dumps(rig.model_dump(mode="json", exclude_defaults=True, exclude_none=True))
+    """The text of a rig.toml, as far as the rig is known; of one that is not, comments show the keys."""
+    told = rig.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
+    unknown = rig.joint == "rotary" and not {"motor", "gear", "arm"} & told.keys()
+    return tomli_w.dumps(told) + (RIG_COMMENT if unknown else "")

@@ -29,7 +29,7 @@ def read_sheets(paths: Sequence[Path]) -> tuple[list[Sheet], dict[str, str | Ren
         for entry in entries_of(container, plain):
             table = table_of(container, entry, plain)
             columns: Columns = read_columns(table) if isinstance(table, Table) else table.columns
-            sheets.append(Sheet(table.place, _possible(columns), table.rate_hz))
+            sheets.append(Sheet(table.place, _possible(columns), table.rate_hz, entry.file))
             if table.told:
                 notes.append(f"{table.place}: {table.told}")
     return sheets, renamed, notes

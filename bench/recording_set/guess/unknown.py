@@ -12,6 +12,7 @@ from bench.recording_set.guess.sheets import read_sheets
 from bench.recording_set.mapping import Mapping
 from bench.recording_set.read import MAPPING_FILE, RIG_FILE, name_of_set, own_mapping, read_recording_set, read_rig_of
 from bench.recording_set.recording_set import RecordingSet
+from bench.recording_set.trials_csv import TRIALS_FILE
 
 
 def guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Guess, Rig, tuple[str, ...]]:
@@ -26,11 +27,14 @@ def guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Gues
         RecordingSetError: a file that cannot be read, or a column that is not there.
     """
     own = rig or _own_rig(paths)
+    with open_container(*paths) as container:
+        lists_trials = container.has(TRIALS_FILE)
     if known.counts_per_turn is None and own is not None and own.sensor.counts_per_turn is not None:
         known = replace(known, counts_per_turn=own.sensor.counts_per_turn * (own.gear.ratio or 1.0))
     sheets, renamed, notes = read_sheets(paths)
     guess = guess_mapping(sheets, known)
-    guess = replace(guess, mapping=guess.mapping.model_copy(update={"trials_columns": renamed}))
+    mapping = guess.mapping.model_copy(update={"trials_columns": renamed})
+    guess = replace(guess, mapping=mapping, files=() if lists_trials else guess.files)  # else trials.csv tells them
     return guess, own or Rig(name=name_of_set(list(paths)), joint=guess.joint), tuple(notes)
 
 

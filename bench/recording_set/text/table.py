@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
 
-from bench.recording_set.container import Container
+from bench.recording_set.container import Container, Files
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.text.dialect import BLANKS, Dialect, dialect_of, dialect_of_text, is_comment
 from bench.recording_set.text.encoding import UTF_8, encoding_of, name_of
@@ -242,5 +242,6 @@ def quoted(cell: str) -> str:
 
 
 def place(container: Container, file: str) -> str:
-    """A file of a set as its user knows it."""
-    return file if container.path.name == file else f"{container.path.name}/{file}"
+    """A file of a set as its user knows it: of files that were named one by one, its own name."""
+    alone = isinstance(container, Files) or container.path.name in ("", file)
+    return file if alone else f"{container.path.name}/{file}"

@@ -7,12 +7,12 @@ from bench.store import Store
 from bench.study.errors import lab_errors
 from bench.study.material import load_model
 from bench.study.models.coverage import Advice, Coverage, Held, JudgedEffect
+from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
 from compensator.lab.comparison.judgeable import Judgeable, judgeable
 from compensator.lab.rows import coverage as lab
 from compensator.lab.rows.dataset import Dataset
 
 WIDE = 5.0  # between the slow and the fast: fewer, and friction over speed is a line whatever it is
-FEWEST_STARTS = 12  # from rest: what a breakaway law needs
 FEWEST_LOADS = 3  # to tell a line from a curve
 WARM_K = 5.0
 TURNS = 2.0
@@ -22,6 +22,7 @@ WARMTH = "the drive's temperature beside the other channels, with the same slow 
 SESSION = "the same slow trial at the start, in the middle and at the end of a session, with the time of day"
 BOTH = "the same motion the other way round"
 RAMPS = "breakaway ramps from rest at several rates, both ways"
+REVERSALS = "short strokes to and fro: twenty reversals or more"
 REPEAT = "one trial again, unchanged: without it nobody knows how well any model could do"
 SPEEDS = "a slower and a faster trial: ten times apart"
 
@@ -169,6 +170,8 @@ def _opens(one: Judgeable, found: lab.Coverage) -> str:
         return WARMTH
     if effect.varies_with == "session_s":
         return SESSION
+    if one.few:
+        return RAMPS if effect.rows == "breakaway" else REVERSALS
     if one.standing == "not measured":
         return ""
     if not found.both_directions:

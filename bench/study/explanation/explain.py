@@ -51,6 +51,7 @@ class Explained:
         sentences: what was measured, what was missing, what is left.
         rungs: error from model to model.
         coverage: what the trials can and cannot tell.
+        not_judged: effects that the last diagnosis could not judge on these trials; the report says why.
         html: the report, as one page that needs no network.
     """
 
@@ -58,6 +59,7 @@ class Explained:
     sentences: tuple[str, ...]
     rungs: Ladder
     coverage: Coverage
+    not_judged: tuple[str, ...]
     html: str
 
     def as_json(self) -> dict[str, object]:
@@ -67,6 +69,7 @@ class Explained:
             "sentences": list(self.sentences),
             "ladder": self.rungs.model_dump(mode="json"),
             "coverage": self.coverage.model_dump(mode="json"),
+            "not_judged": list(self.not_judged),
         }
 
 
@@ -134,6 +137,7 @@ def explain(
         sentences=tuple(summary(study, rungs, left, confused)),
         rungs=rungs,
         coverage=told,
+        not_judged=tuple(str(one.values["effect"]) for one in last.findings if one.code == "not-judged"),
         html=html_page(f"What the model of {name} lacks", [head, *([came_in] if came_in else []), *rest]),
     )
 

@@ -1,7 +1,8 @@
 """Which effects trials can show beside a model, and which look alike in them: told by the columns, before any evidence.
 
 What the model can make of an effect's columns is taken out first. An effect of which hardly anything is left hides in
-the model; two of which one makes up for the other are confounded. Neither needs the measured effort.
+the model; two of which one makes up for the other are confounded. Neither needs the measured effort. What a diagnosis
+would not judge, for want of reversals or starts from rest, is not measured here either.
 """
 
 from collections.abc import Sequence
@@ -11,6 +12,7 @@ from typing import Literal
 
 import numpy as np
 
+from compensator.lab.at_rest.few_rows import few_rows
 from compensator.lab.effects.catalogue import candidates
 from compensator.lab.effects.effect import Effect
 from compensator.lab.errors import NotApplicableError
@@ -38,6 +40,7 @@ class Judgeable:
         reason: what they lack, or where it hides; "" where nothing.
         rivals: effects that look alike in these trials.
         smallest: size, root mean square over that of the effort, from which it would show; NaN where it cannot.
+        few: whether rows are what is lacking, near reversals or at starts from rest.
     """
 
     effect: Effect
@@ -45,6 +48,7 @@ class Judgeable:
     reason: str
     rivals: tuple[str, ...]
     smallest: float = nan
+    few: bool = False
 
 
 @dataclass(frozen=True)
@@ -66,7 +70,12 @@ def judgeable(fit: Fit) -> list[Judgeable]:
     found: dict[str, Judgeable] = {}
     base = _orthonormal(fit.columns[fit.training])
     dataset = with_own_prediction(fit.dataset, fit.terms)
+    too_few = few_rows(fit)
     for effect in candidates(fit.names, fit.dataset.facts):
+        if effect.name in too_few:
+            reason = too_few[effect.name].partition("; ")[0]
+            found[effect.name] = Judgeable(effect, "not measured", reason, (), few=True)
+            continue
         try:
             one = _beside(fit, dataset, effect, base)
         except NotApplicableError as error:

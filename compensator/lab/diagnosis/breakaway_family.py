@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
 from compensator.lab.at_rest.breakaway_regression import (
     LAG,
     BreakawayFit,
@@ -14,6 +13,7 @@ from compensator.lab.at_rest.breakaway_regression import (
     lag_column,
 )
 from compensator.lab.at_rest.breakaway_rows import BreakawayRows, shares_of
+from compensator.lab.at_rest.few_rows import few_starts
 from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
 from compensator.lab.diagnosis.confirmation import is_confirmed
@@ -65,12 +65,10 @@ def breakaway_answer(
             warmth shows that a hundred times in sliding for once in a start: where sliding says no, starts are not
             enough to name it.
     """
+    too_few = few_starts(fit, rows)
+    if rows is None or too_few is not None:
+        return None, too_few or {}
     wanted = [effect for effect, _ in shares_of(candidates(fit.names, fit.dataset.facts))]
-    count = 0 if rows is None else int(rows.training.sum())
-    if rows is None or count < FEWEST_STARTS:
-        why = f"{count} starts from rest whose effort is known, wanted {FEWEST_STARTS}; record breakaway ramps: "
-        only = [effect for effect in wanted if effect.rows == "breakaway"]
-        return None, {effect.name: f"{effect.name} needs more: {why}{effect.excited_by}" for effect in only}
     base = fit_breakaway(rows, fit.effects)
     blocks, bases, left_out = breakaway_blocks(base, wanted)
     unit = rows.unit[rows.training]
@@ -89,7 +87,7 @@ def breakaway_answer(
     p_value = among_all(screening.p_value)
     found = p_value <= SIGNIFICANT and is_confirmed(ranked[0]) and _shows_where_due(ranked[0], sliding)
     stretches = len(np.unique(unit))
-    sentence = _sentence(ranked[0], p_value, count, stretches) if found else ""
+    sentence = _sentence(ranked[0], p_value, int(rows.training.sum()), stretches) if found else ""
     notes = [] if found else _too_few(stretches)
     best = next(one.item for one in judged if one.effect is ranked[0].effect)
     verdict: Verdict = "missing" if found else "nothing"

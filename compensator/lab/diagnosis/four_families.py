@@ -6,23 +6,22 @@ import numpy as np
 
 from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.at_rest.few_rows import few_reversals
 from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.diagnosis.families import answer_of
-from compensator.lab.effects.catalogue import candidates, effect_named
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import predicts_better
 from compensator.lab.model.validation import held_out
-from compensator.lab.recordings.regimes import Regime
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Screening, screen, screen_against_noise
 from compensator.lab.screening.gathering import gather, with_noise
 from compensator.lab.screening.own_load import on_own_load
 
-FEWEST_REVERSAL_ROWS = 40
 # stages of a diagnosis, as whoever waits for it is told of them
 CHECKS = "Checking the data"
 COLUMNS = "Computing what every effect would add"
@@ -107,12 +106,9 @@ def judged(fit: Fit) -> FourFamilies:
 def _memory_of(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
     """The family of effects with memory, on all rows in motion; None, and why, where these hold no reversals."""
     dataset = fit.dataset
-    trained = np.isin(dataset.trial_index, np.unique(dataset.trial_index[fit.training]))
-    near_reversals = int((trained & (dataset.regime == Regime.TRANSIENT)).sum())
-    wanted = [effect for effect in candidates(fit.names, dataset.facts) if effect.rows == "moving"]
-    if near_reversals < FEWEST_REVERSAL_ROWS:
-        why = f"needs reversals and starts: {near_reversals} rows lie near one, wanted {FEWEST_REVERSAL_ROWS}; record "
-        return None, {effect.name: f"{effect.name} {why}{effect.excited_by}" for effect in wanted}
+    too_few = few_reversals(fit)
+    if too_few is not None:
+        return None, too_few
     wide = widened(fit, "moving" if dataset.rows == "sliding" else dataset.rows)
     gathered = on_own_load(gather(wide, "moving"))
     screening = screen(gathered.bases, gathered.named, dataset.block_index[gathered.rows])

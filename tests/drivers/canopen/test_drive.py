@@ -35,6 +35,15 @@ def test_opening_sets_the_watchdog_and_the_pdos_with_the_power_off(node, drive_o
     assert node.off_at_s is None, "it was never on"
 
 
+@pytest.mark.usefixtures("node")
+def test_a_watchdog_that_is_off_with_the_power_says_from_when_on_it_watches(drive_of):
+    drive = drive_of()
+    drive.open(0.005)
+    [objects] = [table for table in drive.describe().tables if table.title == "Objects of the drive"]
+    [said] = [row[-1] for row in objects.rows if row[0].startswith("consumer heartbeat time")]
+    assert said == "0 while the power is off; watches for 100 ms from switching on"
+
+
 def test_nothing_moves_before_identity_watchdog_and_pdos_are_right(node, drive_of):
     drive_of().open(0.005)
     asked = [data for cob, data in node.received if cob == 0x605]

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
 from compensator.lab.at_rest.breakaway_regression import LAG, fit_breakaway, held_out_breakaway, lag_column
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.breakaways import resolution_of, starts_of
-from compensator.lab.diagnosis.breakaway_family import FEWEST_STARTS, breakaway_answer
+from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.model.fit import fit_model
 from compensator.lab.recordings.effort import choose_effort

@@ -1,0 +1,24 @@
+"""What a message says of the bench that the global options chose."""
+
+from pathlib import Path
+
+import pytest
+
+from bench.cli.bench_session import BenchSession
+
+
+@pytest.mark.parametrize(
+    ("session", "said"),
+    [
+        (BenchSession(), "run 'friction-bench doctor --move'"),
+        (BenchSession(Path("b.toml")), "run 'friction-bench --config b.toml doctor --move'"),
+        (BenchSession(Path("my b.toml"), "s"), "run 'friction-bench --config 'my b.toml' --store s doctor --move'"),
+    ],
+)
+def test_a_command_about_the_drive_names_its_bench(session, said):
+    assert session.in_full("run 'friction-bench doctor --move'") == said
+
+
+def test_other_commands_stay_as_they_are():
+    said = "'friction-bench drives scan' and 'friction-bench serve'"
+    assert BenchSession(Path("b.toml")).in_full(said) == said
