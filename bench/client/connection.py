@@ -42,9 +42,9 @@ class Connection:
         """
         return self._repeated("GET", path, params=_given(query)).json()
 
-    def text(self, path: str) -> str:
+    def text(self, path: str, **query: Any) -> str:
         """Text, as `get`."""
-        return self._repeated("GET", path).text
+        return self._repeated("GET", path, params=_given(query)).text
 
     def post(self, path: str, body: Mapping[str, object] | None = None, key: str | None = None) -> Any:
         """JSON. With an idempotency key it is sent again where no answer came; else never.

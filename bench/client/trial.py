@@ -54,7 +54,8 @@ class Trial:
             path = f"/trials/{self.trial_id}/samples"
             found = self._connection.get(path, channels=",".join(names) or None, points=points)["channels"]
             return {name: np.array(values, dtype=np.float64) for name, values in found.items()}
-        whole = _columns(self._connection.text(f"/trials/{self.trial_id}/csv"))
+        # those too that no recording set holds: a channel may be recorded before the model lab knows it
+        whole = _columns(self._connection.text(f"/trials/{self.trial_id}/csv", every_channel=True))
         recorded = {name: whole[name] for name in self.facts["channels"]}
         return {name: recorded[name] for name in _known(names, recorded)} if names else recorded
 

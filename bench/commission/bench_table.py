@@ -2,9 +2,8 @@
 
 from math import inf, isnan, nan, pi
 
-from bench.commission.evidence import Evidence
+from bench.commission.evidence import Evidence, interval
 from bench.commission.gravity import Weighed
-from bench.commission.intervals import interval
 from bench.commission.proposal import CEILING_SHARE, SERVO_SHARE, Joint, Proposal, propose
 from bench.commission.questions import Known
 from bench.commission.scale import Scale

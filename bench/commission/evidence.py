@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from bench.json_types import Value, Values, number
 from compensator.line_fit import Interval
 
 
@@ -41,3 +42,20 @@ class Evidence:
         self._findings.append(
             Finding(name=name, value=found.value, unit=unit, how=told, experiment_id=experiment_id, **ends)
         )
+
+
+def interval(results: Values, name: str) -> Interval:
+    """A result [value, low, high, note] of an experiment as an interval; NaN for what is not known.
+
+    Raises:
+        TypeError: the result is no such list.
+    """
+    found = results[name]
+    if isinstance(found, str) or not isinstance(found, list | tuple):
+        raise TypeError(f"{name} is {found!r}; [value, low, high, note] is wanted")
+    value, low, high, note = found
+    return Interval(_number(value), _number(low), _number(high), str(note))
+
+
+def _number(value: Value) -> float:
+    return float("nan") if value is None else number(value)

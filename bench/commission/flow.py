@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 from math import degrees, isnan, nan, pi, radians
 
 from bench.commission.bench_table import BenchTable
-from bench.commission.evidence import Evidence
+from bench.commission.evidence import Evidence, interval
 from bench.commission.gravity import check_back_emf, weighed
-from bench.commission.intervals import interval
 from bench.commission.motions import ATTEMPTS, Motions
 from bench.commission.proposal import CEILING_SHARE
 from bench.commission.questions import FIRST_LOAD, HAND_ANGLE, CommissionError, Known, Person, ask_all, need

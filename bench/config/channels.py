@@ -20,7 +20,7 @@ class Channel:
         label: short, for plots and messages.
         description: one line.
         read: what of a control cycle it is, a path among `bench.control.cycle.VALUES`; of a pair, among
-            `bench.control.pair.PAIR_VALUES`.
+            `bench.control.pairs.pair.PAIR_VALUES`.
         plotted: whether a plot of the trial shows it unless asked otherwise.
         exported: whether a recording set, a CSV or a Parquet file holds it. The model lab has to know it, then.
     """

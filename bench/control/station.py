@@ -13,8 +13,8 @@ from bench.control.joint import ControlledJoint
 from bench.control.joint_group import JointGroup, SingleJoint
 from bench.control.limits import Guard
 from bench.control.loop import ControlLoop
-from bench.control.pair import JointPair
-from bench.control.pair_equipment import make_pair
+from bench.control.pairs.pair import JointPair
+from bench.control.pairs.pair_equipment import make_pair
 from bench.control.power.brake import brake_of
 from bench.control.servo import check_modes, current_servo, torque_constant_n_m_a
 from bench.control.technician import PersonTechnician, Technician

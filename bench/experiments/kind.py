@@ -13,7 +13,7 @@ from compensator.lab.recordings.recording import Condition
 from drivers.contract import Mode
 
 AnyProcedure = Generator[Any, Any, dict[str, Value]]
-"""Of one joint (`bench.control.cycle.Procedure`), or of a pair (`bench.control.pair.PairProcedure`)."""
+"""Of one joint (`bench.control.cycle.Procedure`), or of a pair (`bench.control.pairs.pair.PairProcedure`)."""
 
 
 RESULTS_OF_ALL = {"cycles": "control cycles of the trial", "overruns": "of these, those that ended late"}
@@ -92,7 +92,7 @@ class ExperimentKind:
         modes: that the drive has to close itself. Position is done without; a current by drives with a duty, too.
         adapt: the parameters as a drive of certain modes allows; raises nothing.
         results: what the results of each trial are, by name; the reference prints them.
-        pair: it moves a master and a slave; its procedures are those of `bench.control.pair`.
+        pair: it moves a master and a slave; its procedures are those of `bench.control.pairs.pair`.
     """
 
     name: str

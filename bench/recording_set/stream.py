@@ -72,9 +72,15 @@ def stream_of(recording: Recording) -> RecordingStream:
     return RecordingStream(recording.name, recording.kind, recording.conditions, names, len(recording), events, read)
 
 
-def stream_of_trial(store: Store, trial: Trial) -> RecordingStream:
-    """A trial of the store as a stream: the rows that it has now. A slow reader holds no transaction open."""
-    channels = exported(trial.channels)
+def stream_of_trial(store: Store, trial: Trial, every_channel: bool = False) -> RecordingStream:
+    """A trial of the store as a stream: the rows that it has now. A slow reader holds no transaction open.
+
+    Args:
+        store: with the trial.
+        trial: which.
+        every_channel: those too that no recording set holds.
+    """
+    channels = tuple(trial.channels) if every_channel else exported(trial.channels)
     columns = [trial.channels.index(name) for name in channels]
 
     def read(first_row: int, rows: int) -> FloatArray:

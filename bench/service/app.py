@@ -43,13 +43,10 @@ from bench.service.routes import (
     queue,
     recording_sets,
     removal,
-    studies,
-    study_answers,
-    study_check,
-    study_rounds,
     trials,
 )
 from bench.service.routes.calibration import calibrations, run
+from bench.service.routes.studies import studies, study_answers, study_check, study_rounds
 from bench.store import Store
 
 DESCRIPTION = """

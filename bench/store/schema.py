@@ -147,7 +147,7 @@ SAMPLE_OVERVIEW = Table(
     _parent("trial", "trial_id", primary_key=True),
     Column("first_row", Integer, primary_key=True, autoincrement=False),
     Column("rows", Integer, nullable=False),  # of the trial that it stands for
-    Column("data", LargeBinary, nullable=False),  # as a block, with two more columns before it: see overview.py
+    Column("data", LargeBinary, nullable=False),  # as a block, with two more columns before it: see plotted/overview.py
     Column("crc32", BigInteger, nullable=True),
 )
 

@@ -10,9 +10,9 @@ from bench.store.errors import StoreValueError
 from bench.store.records import Condition, Event, Trial
 from bench.store.tables import days, samples, trial_search, trials
 from bench.store.tables.conditions import Wanted
-from bench.store.tables.reduction import MIN_POINTS
+from bench.store.tables.plotted.reduction import MIN_POINTS
+from bench.store.tables.plotted.window import Stretch, reduced
 from bench.store.tables.trial_search import TrialQuery
-from bench.store.tables.window import Stretch, reduced
 from bench.store.trial_writer import TrialWriter
 from bench.store.upkeep.custody import Custody
 from compensator.lab.recordings.gaps import is_before_gap

@@ -5,8 +5,7 @@ from time import perf_counter
 from typing import Generic, TypeVar
 
 from drivers.actuator.actuator import Actuator
-from drivers.actuator.reading import Reading
-from drivers.actuator.sample import sample_of
+from drivers.actuator.reading import Reading, sample_of
 from drivers.contract import Inspection, Mode, Sample, Status
 from drivers.errors import DriveConnectionError, DriveError
 from drivers.joint import JointScale, Standstill

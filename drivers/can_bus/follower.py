@@ -3,8 +3,7 @@
 from collections.abc import Callable
 from time import perf_counter
 
-from drivers.actuator.reading import Reading
-from drivers.actuator.sample import sample_of
+from drivers.actuator.reading import Reading, sample_of
 from drivers.can_bus.port import CanPort, Heard
 from drivers.can_bus.settings import BusSettings
 from drivers.contract import Sample, Status

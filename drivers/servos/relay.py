@@ -10,8 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
 
-from drivers.actuator.reading import Reading
-from drivers.actuator.sample import sample_of
+from drivers.actuator.reading import Reading, sample_of
 from drivers.contract import Sample, Status
 from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale

@@ -46,7 +46,9 @@ def started(command, monkeypatch):
         monkeypatch.setattr("bench.cli.lab.study_trials.suggested", suggested)
         monkeypatch.setattr("bench.cli.lab.study_trials.carry_out", carry_out)
         monkeypatch.setattr("bench.study.extend.extend_study", extend_study)
-        monkeypatch.setattr("bench.study.diagnose.diagnose", lambda *_: Diagnosis.model_construct(sentence="so"))
+        monkeypatch.setattr(
+            "bench.study.diagnosis.diagnose.diagnose", lambda *_: Diagnosis.model_construct(sentence="so")
+        )
         told = command("study", "suggest", 1, "--start", "--json", *extra)
         return json.loads(told.stdout), told.exit_code, asked
 

@@ -2,11 +2,13 @@
 
 import threading
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from bench.client import Bench, Refused, Unreachable, connection
+from bench.config.channels import CHANNELS
 from bench.control import station
 from bench.control.drive_factory import Equipment
 from bench.control.technician import PersonTechnician
@@ -33,6 +35,18 @@ def test_a_run_from_start_to_arrays(bench, service):
     with pytest.raises(KeyError, match="no channel colour"):
         trials[0].channels("colour")
     assert f"<Trial {trials[0].trial_id} step-001" in repr(bench.trial(trials[0].trial_id))
+
+
+def test_a_channel_that_no_recording_set_holds_is_read_too(bench, service, monkeypatch):
+    monkeypatch.setitem(CHANNELS, "duty", replace(CHANNELS["duty"], exported=False))
+    trial = bench.trials(kind="steps")[0]
+    kept = service.store.samples(trial.trial_id)
+    channels = trial.channels()
+    assert list(channels) == list(kept)
+    assert np.array_equal(channels["duty"], kept["duty"], equal_nan=True)
+    assert list(trial.channels("duty")) == ["duty"]
+    shared = service.client.get(f"/trials/{trial.trial_id}/csv").text.splitlines()[0].split(",")
+    assert "duty" not in shared
 
 
 def test_lists_are_read_to_their_end(bench, service, monkeypatch):

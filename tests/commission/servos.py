@@ -13,7 +13,7 @@ from math import inf, pi
 
 import numpy as np
 
-from bench.commission.intervals import interval
+from bench.commission.evidence import interval
 from bench.commission.proposal import Joint, Proposal, propose
 from bench.config.configuration import BenchConfiguration, parse_configuration
 from bench.config.sections import ServoSettings

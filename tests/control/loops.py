@@ -17,7 +17,7 @@ from bench.control.joint import ControlledJoint
 from bench.control.joint_group import SingleJoint
 from bench.control.limits import Guard
 from bench.control.loop import ControlLoop
-from bench.control.pair import JointPair
+from bench.control.pairs.pair import JointPair
 from bench.control.servo import CurrentServo
 from drivers.contract import Command, Mode
 from tests.control.fake_drive import RIG, FakeDrive, ListSink

@@ -26,7 +26,7 @@ from bench.runs.runner import Runner
 from bench.store import Store
 from bench.study.compare import compare
 from bench.study.create import create_study
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis.diagnose import diagnose
 from drivers.contract import Mode
 from sim_backend.devices.axis import TICK_S
 from tests.commission.wires import VirtualWire

@@ -37,7 +37,7 @@ def _imported() -> Any:
     from bench.store import Store
     from bench.study.compare import compare
     from bench.study.create import create_study
-    from bench.study.diagnose import diagnose
+    from bench.study.diagnosis.diagnose import diagnose
     from bench.study.report.report import report_html
 
     names = {"Store": Store, "create_study": create_study, "compare": compare}

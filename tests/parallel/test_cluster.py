@@ -12,7 +12,7 @@ from bench.parallel.cluster import ClusterError
 from bench.parallel.over_cores import as_they_end, over_cores
 from bench.store import Store
 from bench.study.create import create_study
-from bench.study.diagnose_many import diagnose_many
+from bench.study.diagnosis.diagnose_many import diagnose_many
 from tests.lab.synthetic import plans
 from tests.study.conftest import imported
 

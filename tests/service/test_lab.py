@@ -21,7 +21,7 @@ from bench.store import Store
 from bench.store.errors import NotFoundError
 from bench.study.compare import compare
 from bench.study.create import create_study, describe
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis.diagnose import diagnose
 from tests.queue.waiting import wait_for
 from tests.service.recorded_joint import recording_set_zip
 

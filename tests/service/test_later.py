@@ -35,7 +35,7 @@ def test_neither_the_lab_nor_scipy_is_imported_by_the_service():
 def places():
     """What the routes name of the lab, as `bench.study.ladder.ladder`."""
     found = set()
-    for path in Path(routes.__path__[0]).glob("*.py"):
+    for path in Path(routes.__path__[0]).rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Attribute) and ast.unparse(node).startswith("bench.study."):
                 found.add(ast.unparse(node))

@@ -6,9 +6,13 @@ import re
 import httpx
 import jsonschema_rs
 import pytest
+from fastapi import FastAPI
+from pydantic import Field
 
 from bench.evaluation.figures import trials as figures
 from bench.evaluation.paper.measurements import Plan
+from bench.service.http.openapi import install
+from bench.study.models.base import EffortName, StudyModel
 from compensator.lab.effects.catalogue import catalogue
 
 
@@ -66,6 +70,32 @@ def test_examples_are_answers_as_they_are_now(document):
             assert set(said["example"]) == set(fields), route
             tried += 1
     assert tried > 50
+
+
+class Largest(StudyModel):
+    trial_id: int = Field(examples=[7])
+    effort: EffortName = Field(description="what it is of")
+
+
+class AllOfThem(StudyModel):
+    items: list[Largest]
+    floor: float | None
+
+
+class Nameless(StudyModel):
+    items: list[Largest]
+    count: int
+
+
+def test_an_answer_that_was_not_recorded_is_shown_by_the_examples_of_its_fields():
+    app = FastAPI()
+    for path, model in (("/whole", AllOfThem), ("/nameless", Nameless)):
+        app.get(path, response_model=model)(lambda: None)
+    install(app)
+    said = {route: answer["content"]["application/json"] for route, _, answer in answers(app.openapi())}
+    largest = {"trial_id": 7, "effort": {"name": "torque", "unit": "N m"}}
+    assert said["get /whole"]["example"] == {"items": [largest], "floor": None}
+    assert "example" not in said["get /nameless"]  # a field of it has none: `test_every_answer_has_an_example` says so
 
 
 def test_every_property_name_or_text_says_its_unit(document):

@@ -6,7 +6,7 @@ from sqlalchemy import delete
 
 from bench.store import Store
 from bench.store.schema import SAMPLE_OVERVIEW
-from bench.store.tables.overview import GROUP_ROWS, overview_of
+from bench.store.tables.plotted.overview import GROUP_ROWS, overview_of
 from bench.store.tables.samples import columns_of
 from tests.store.examples import CHANNELS, begin, begin_trial
 

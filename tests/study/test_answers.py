@@ -11,13 +11,13 @@ from bench.store.errors import NotFoundError
 from bench.study.changes import _sentence, add_effect, drop_effect
 from bench.study.compare import compare
 from bench.study.create import create_study, describe
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis.diagnose import diagnose
+from bench.study.diagnosis.search import search
 from bench.study.effects import effects_catalogue
 from bench.study.errors import StudyError
 from bench.study.ladder import ladder
 from bench.study.models.base import StudyModel
 from bench.study.models.study import Study
-from bench.study.search import search
 from compensator.lab.model.gain import Gain
 from tests.lab.synthetic import Joint, plans
 from tests.study.conftest import imported

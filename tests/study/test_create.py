@@ -12,7 +12,7 @@ from bench.recording_set.transfer import BY_CONTROL_LOOP
 from bench.store.errors import NotFoundError
 from bench.study.compare import compare
 from bench.study.create import create_study, describe
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis.diagnose import diagnose
 from bench.study.errors import StudyError
 from bench.study.material import facts_of, load
 from tests.lab.synthetic import plans, recordings

@@ -4,8 +4,8 @@ import pytest
 
 from bench.store.errors import NotFoundError
 from bench.study.create import create_study
-from bench.study.diagnose import diagnose
-from bench.study.diagnose_many import diagnose_many
+from bench.study.diagnosis.diagnose import diagnose
+from bench.study.diagnosis.diagnose_many import diagnose_many
 from tests.lab.synthetic import plans
 from tests.study.conftest import imported
 

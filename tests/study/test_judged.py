@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from bench.study import judged
 from bench.study.changes import add_effect
 from bench.study.create import create_study
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis import judged
+from bench.study.diagnosis.diagnose import diagnose
 from bench.study.report.report import report_html
 
 

@@ -7,7 +7,7 @@ from bench.recording_set import import_recording_set
 from bench.recording_set.recording_set import RecordingSet
 from bench.store import Store
 from bench.study.create import create_study, describe
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis.diagnose import diagnose
 from bench.study.material import load_model
 from compensator.lab.recordings.recording import Recording
 

@@ -10,7 +10,7 @@ from bench.study.changes import add_effect, drop_effect
 from bench.study.closed_loop import simulate
 from bench.study.compare import compare
 from bench.study.create import create_study
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis.diagnose import diagnose
 from bench.study.ladder import ladder
 from bench.study.report.report import report_html
 from tests.lab.synthetic import Joint, plans

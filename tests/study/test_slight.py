@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 
 from bench.evaluation.challenge.guess import guess_of_study
-from bench.study import diagnose as study
 from bench.study.changes import add_effect
 from bench.study.create import create_study
-from bench.study.judged import diagnosis_of_model
+from bench.study.diagnosis import diagnose as study
+from bench.study.diagnosis.judged import diagnosis_of_model
 from bench.study.material import load_model
 from compensator.lab.model.gain import Gain
 from tests.lab.synthetic import plans

@@ -7,9 +7,9 @@ import pytest
 from bench.study.changes import add_effect
 from bench.study.compare import compare
 from bench.study.create import create_study
+from bench.study.diagnosis.search import search
 from bench.study.ladder import ladder
 from bench.study.models.stages import CHANGE, COMPARISON, DIAGNOSING, LOADED
-from bench.study.search import search
 from compensator.lab import progress
 from compensator.lab.diagnosis.four_families import STAGES
 from compensator.lab.diagnosis.search import stages_of

@@ -10,10 +10,10 @@ import pytest
 
 from bench.config.configuration import default_configuration
 from bench.runs.runner import Runner
-from bench.study import judged
 from bench.study.compare import compare
 from bench.study.create import create_study, describe
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis import judged
+from bench.study.diagnosis.diagnose import diagnose
 from bench.study.errors import StudyError
 from bench.study.extend import extend_study
 from bench.study.ladder import ladder

@@ -128,7 +128,7 @@ def simulate_command(
 @app.command("diagnose")
 def diagnose_command(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
     """Which physical effect is missing, how sure is that, and what would adding it bring."""
-    from bench.study.diagnose import diagnose
+    from bench.study.diagnosis.diagnose import diagnose
 
     _show(context, as_json, diagnosis_tables.diagnosis, diagnose, study, model)
 
@@ -144,9 +144,9 @@ def diagnose_many_command(
     """Diagnose the newest models of many studies, on all cores or on a cluster."""
     from bench.parallel.over_cores import start_early
 
-    start_early("bench.study.diagnose_many", workers, cluster)
+    start_early("bench.study.diagnosis.diagnose_many", workers, cluster)
 
-    from bench.study.diagnose_many import diagnose_many
+    from bench.study.diagnosis.diagnose_many import diagnose_many
 
     with session_of(context).open_store() as store:
         chosen = studies or sorted(row.id for row in store.studies())
@@ -195,7 +195,7 @@ def search_command(
     as_json: Json = False,
 ) -> None:
     """Add effects one after the other until nothing is missing; each step is a rung of the ladder."""
-    from bench.study.search import search
+    from bench.study.diagnosis.search import search
 
     _show(context, as_json, diagnosis_tables.search, search, study, model, most)
 

@@ -14,7 +14,8 @@ from bench.cli.operation.service import ask
 from bench.cli.output import print_json, say
 from bench.errors import LimitError, ParameterError
 from bench.store import Experiment
-from bench.study import diagnose, extend
+from bench.study import extend
+from bench.study.diagnosis import diagnose
 from bench.study.errors import StudyError
 from bench.study.models.diagnosis import Diagnosis
 from bench.study.models.study import Extended

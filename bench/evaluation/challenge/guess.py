@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from bench.errors import ParameterError
 from bench.evaluation.challenge.names import RECORDED, accepted
 from bench.store import Store
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis.diagnose import diagnose
 from bench.study.ladder import ladder
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import UnknownEffectError

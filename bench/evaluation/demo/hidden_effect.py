@@ -12,7 +12,7 @@ from bench.store import Store
 from bench.study.changes import add_effect
 from bench.study.compare import compare
 from bench.study.create import create_study
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis.diagnose import diagnose
 from bench.study.ladder import ladder
 from bench.study.models.diagnosis import Diagnosis, Ranked
 from bench.study.models.ladder import Ladder, Rung

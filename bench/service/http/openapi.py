@@ -96,12 +96,29 @@ def _complete(path: str, method: str, route: Document, schemas: Document) -> Non
         responses[str(status)] = _problem(status)
 
 
-def _own_example(schema: Document, schemas: Document) -> Document | None:
-    """An answer made of the examples that a model gives for each of its fields; None where one has none."""
-    fields = schemas.get(schema.get("$ref", "").rpartition("/")[2], {}).get("properties", {})
-    if not fields or not all("examples" in field for field in fields.values()):
+def _own_example(schema: Document, schemas: Document) -> Any:
+    """An answer made of the examples that a model gives for its fields; None where one of them has none."""
+    try:
+        return _example_of(schema, schemas)
+    except _NoExampleError:
         return None
-    return {name: field["examples"][0] for name, field in fields.items()}
+
+
+class _NoExampleError(Exception):
+    """Raised for a field of which nothing is known but its type."""
+
+
+def _example_of(schema: Document, schemas: Document) -> Any:
+    if "examples" in schema:
+        return schema["examples"][0]
+    if schema.get("type") == "array":
+        return [_example_of(schema["items"], schemas)]
+    if {"type": "null"} in schema.get("anyOf", ()):
+        return None
+    fields = schemas.get(schema.get("$ref", "").rpartition("/")[2], {}).get("properties", {})
+    if not fields:
+        raise _NoExampleError
+    return {name: _example_of(field, schemas) for name, field in fields.items()}
 
 
 def _problem(status: int) -> Document:

@@ -203,14 +203,21 @@ def _or(value: float | None, otherwise: float) -> float:
         **conditional.ANSWER,
     },
 )
-def csv(store: StoreOf, request: Request, trial_id: TrialId) -> StreamingResponse:
+def csv(
+    store: StoreOf,
+    request: Request,
+    trial_id: TrialId,
+    every_channel: Annotated[bool, Query(description="channels too that no recording set holds")] = False,
+) -> StreamingResponse:
     """The same file that a recording set holds for the trial: numbers are exact."""
     from bench.recording_set import csv_chunks, stream_of_trial  # imported when needed: the service starts without it
 
     found = store.trial(trial_id)
     headers = _known(request, found) | {"Content-Disposition": f'attachment; filename="trial-{found.id}.csv"'}
     return StreamingResponse(
-        csv_chunks(stream_of_trial(store, found)), media_type="text/csv; charset=utf-8", headers=headers
+        csv_chunks(stream_of_trial(store, found, every_channel)),
+        media_type="text/csv; charset=utf-8",
+        headers=headers,
     )
 
 

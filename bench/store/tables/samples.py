@@ -10,7 +10,7 @@ from sqlalchemy import Connection, bindparam, insert, select, update
 from bench.store.errors import NotFoundError, StoreValueError
 from bench.store.records import Trial
 from bench.store.schema import SAMPLE_BLOCK, SAMPLE_OVERVIEW, TRIAL
-from bench.store.tables.overview import asked_by, asked_by_all, overview_of
+from bench.store.tables.plotted.overview import asked_by, asked_by_all, overview_of
 from compensator.lab.recordings.recording import FloatArray
 
 STORED = np.dtype("<f8")

@@ -8,7 +8,8 @@ from bench.store import Store
 from bench.study.changes import add_effect
 from bench.study.compare import compare
 from bench.study.create import create_study, describe
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis.diagnose import diagnose
+from bench.study.diagnosis.search import search_and_diagnose
 from bench.study.errors import StudyError
 from bench.study.explanation.coverage import coverage
 from bench.study.explanation.never_slid import NeverSlidError, never_slid_page
@@ -32,7 +33,6 @@ from bench.study.report.model_sections import (
     worst_trial,
 )
 from bench.study.report.wording import in_words
-from bench.study.search import search_and_diagnose
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import NeverSlidesError
 

@@ -7,7 +7,7 @@ from bench.store import Store
 from bench.study.closed_loop import simulate
 from bench.study.compare import compare
 from bench.study.create import describe
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis.diagnose import diagnose
 from bench.study.ladder import ladder
 from bench.study.models.stages import DIAGNOSING, MOVING, REPORT, SUGGESTING
 from bench.study.report.diagnosis_sections import diagnosis_section, provenance_section, suggestion_section

@@ -6,8 +6,8 @@ from bench.calibration import with_friction
 from bench.config.configuration import BenchConfiguration
 from bench.control.drive_factory import is_simulated
 from bench.store import Experiment, Store
+from bench.study.diagnosis.judged import diagnosis_of_model
 from bench.study.errors import StudyError, lab_errors
-from bench.study.judged import diagnosis_of_model
 from bench.study.material import Material, facts_of, load_model
 from bench.study.models.stages import DIAGNOSING, FITTING, SUGGESTION
 from bench.study.models.study import note_for

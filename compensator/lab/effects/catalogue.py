@@ -22,28 +22,30 @@ from compensator.lab.effects.electrical import (
     torque_constant_saturation,
     winding_temperature,
 )
-from compensator.lab.effects.friction import (
+from compensator.lab.effects.friction.load import (
     back_driving_friction,
-    coulomb,
-    coulomb_asymmetry,
     coulomb_quadrant,
-    coulomb_temperature,
-    dwell_strengthening,
-    frictional_lag,
     load_friction,
     load_friction_quadratic,
-    position_periodic_friction,
+    weight_friction,
+)
+from compensator.lab.effects.friction.memory import (
+    dwell_strengthening,
+    frictional_lag,
     pre_sliding,
     rate_dependent_breakaway,
+)
+from compensator.lab.effects.friction.position import position_periodic_friction
+from compensator.lab.effects.friction.speed import (
+    coulomb,
+    coulomb_asymmetry,
     stribeck,
     viscous,
     viscous_asymmetry,
     viscous_power,
     viscous_quadratic,
-    viscous_temperature,
-    warm_up,
-    weight_friction,
 )
+from compensator.lab.effects.friction.temperature import coulomb_temperature, viscous_temperature, warm_up
 from compensator.lab.effects.mechanics import (
     backlash,
     centre_of_mass_angle,

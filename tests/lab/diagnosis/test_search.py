@@ -9,7 +9,7 @@ from functools import cache
 
 import pytest
 
-from bench.study.findings import conclusion_of
+from bench.study.diagnosis.findings import conclusion_of
 from compensator.lab.diagnosis import search as search_module
 from compensator.lab.diagnosis.confirmation import slight_one
 from compensator.lab.diagnosis.diagnose import diagnose

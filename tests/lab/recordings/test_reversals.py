@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compensator.lab.effects.friction.dwell_strengthening import columns
+from compensator.lab.effects.friction.memory.dwell_strengthening import columns
 from compensator.lab.recordings.reversals import REST_S, deflection, since_rest, slider, strokes_of
 from tests.lab.effects.test_effects import motion
 

@@ -1,4 +1,4 @@
-"""Effects of friction, one a file.
+"""Effects of friction, by what it depends on.
 
 Physics only: columns, parameters and bounds; nothing is fitted or judged here.
 """

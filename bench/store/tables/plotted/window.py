@@ -7,8 +7,8 @@ from sqlalchemy import Connection
 
 from bench.store.records import Trial
 from bench.store.tables import samples
-from bench.store.tables.overview import GROUP_ROWS
-from bench.store.tables.reduction import rows_to_keep
+from bench.store.tables.plotted.overview import GROUP_ROWS
+from bench.store.tables.plotted.reduction import rows_to_keep
 from compensator.lab.recordings.recording import FloatArray
 
 GROUPS_PER_POINT = 1.5  # fewer, and a plot is made from all rows: MinMaxLTTB wants about two

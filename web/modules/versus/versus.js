@@ -2,12 +2,12 @@
 
 import { note } from "../app/address.js";
 import { get } from "../app/api.js";
+import { rungName } from "../studies/ladder.js";
+import { unitText, writerOf } from "../studies/parameters.js";
+import { SeriesPlot } from "../studies/seriesplot.js";
 import { attempt, patiently, together } from "../ui/attempt.js";
 import { h, panel, replace, table } from "../ui/dom.js";
 import { conditions, percent } from "../ui/format.js";
-import { rungName } from "./ladder.js";
-import { unitText, writerOf } from "./parameters.js";
-import { SeriesPlot } from "./seriesplot.js";
 
 const SIDES = ["first", "second"];
 

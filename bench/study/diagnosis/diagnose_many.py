@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from bench.parallel.over_cores import over_cores
 from bench.store import Store
 from bench.store.records import ModelRow
-from bench.study.diagnose import answer_of, explained_by
+from bench.study.diagnosis.diagnose import answer_of, explained_by
+from bench.study.diagnosis.judged import diagnosis_of_model
 from bench.study.errors import StudyError, lab_errors
-from bench.study.judged import diagnosis_of_model
 from bench.study.material import Definition, Material, model_of, trials_of
 from bench.study.models.diagnosis import Diagnosis, NotDiagnosed
 from compensator.lab.recordings.recording import Recording

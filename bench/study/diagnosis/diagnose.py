@@ -2,8 +2,8 @@
 
 from bench.store import Store
 from bench.store.records import ModelRow
-from bench.study.findings import conclusion_of, findings_of, not_judged
-from bench.study.judged import diagnosis_of_model
+from bench.study.diagnosis.findings import conclusion_of, findings_of, not_judged
+from bench.study.diagnosis.judged import diagnosis_of_model
 from bench.study.keep import kept_of
 from bench.study.material import load_model
 from bench.study.models.diagnosis import Diagnosis, EffectClass, Picture, ProvisionalTerm, Ranked

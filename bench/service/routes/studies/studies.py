@@ -21,8 +21,8 @@ from bench.study.suggestion.suggested import Suggested
 if TYPE_CHECKING:
     import bench.study.changes
     import bench.study.create
+    import bench.study.diagnosis.search
     import bench.study.extend
-    import bench.study.search
     import bench.study.suggestion.suggest
     import bench.study.use
 else:
@@ -170,7 +170,7 @@ async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
 )
 async def search_effects(request: Request, study_id: StudyId, body: SearchFrom) -> Searched:
     """Adds, exchanges and drops effects one after the other; every model on the way is kept. Takes a while."""
-    found = await in_lab(request, bench.study.search.search, study_id, body.model_id, body.most)
+    found = await in_lab(request, bench.study.diagnosis.search.search, study_id, body.model_id, body.most)
     note(request, f"made {len(found.steps)} models, the last of them {found.model_id}")
     return found
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
-from compensator.lab.effects.friction.load_friction import UNCERTAIN_SHARE
+from compensator.lab.effects.friction.load.load_friction import UNCERTAIN_SHARE
 from compensator.lab.recordings.recording import FloatArray
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import bench.study.closed_loop
     import bench.study.compare
     import bench.study.create
-    import bench.study.diagnose
+    import bench.study.diagnosis.diagnose
     import bench.study.ladder
     import bench.study.plots.error_map
     import bench.study.plots.moments
@@ -82,7 +82,7 @@ async def compare_model(request: Request, study_id: StudyId, model_id: ModelId =
 )
 async def diagnose_model(request: Request, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
     """Effects ranked by evidence; those that the data cannot tell apart are one class. Takes seconds."""
-    return await in_lab(request, bench.study.diagnose.diagnose, study_id, model_id)
+    return await in_lab(request, bench.study.diagnosis.diagnose.diagnose, study_id, model_id)
 
 
 @router.get(

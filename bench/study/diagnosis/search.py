@@ -1,9 +1,9 @@
 """Several effects at once: search, and keep every model on the way as a rung of the ladder."""
 
 from bench.store import Store
-from bench.study.diagnose import answer_of, explained_by, outset_of
+from bench.study.diagnosis.diagnose import answer_of, explained_by, outset_of
+from bench.study.diagnosis.judged import diagnosis_of_model
 from bench.study.errors import lab_errors
-from bench.study.judged import diagnosis_of_model
 from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import load, model_of
 from bench.study.models.change import Searched, SearchStep

@@ -1,0 +1,1 @@
+"""A master and a slave under one control loop."""

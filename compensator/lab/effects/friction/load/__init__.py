@@ -1,0 +1,1 @@
+"""Friction that depends on the load, one effect a file."""

@@ -1,0 +1,1 @@
+"""Friction that depends on what the joint did before, one effect a file."""

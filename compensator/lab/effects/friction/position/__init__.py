@@ -1,0 +1,1 @@
+"""Friction that depends on the position, one effect a file."""

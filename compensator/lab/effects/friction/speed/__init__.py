@@ -1,0 +1,1 @@
+"""Friction that depends on speed and direction, one effect a file."""

@@ -1,0 +1,1 @@
+"""Friction that depends on the temperature, one effect a file."""
