@@ -10,7 +10,7 @@ from bench.recording_set import import_recording_set
 from bench.recording_set.recording_set import RecordingSet
 from bench.store import Store
 from bench.study.create import create_study
-from bench.study.diagnose import diagnose
+from bench.study.diagnosis.diagnose import diagnose
 from bench.study.errors import StudyError
 from bench.study.explanation.coverage import LOADS, RAMPS, REPEAT, REVERSALS, WARMTH, coverage
 from bench.study.explanation.explain import STEPS, explain
