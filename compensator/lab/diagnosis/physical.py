@@ -57,8 +57,11 @@ def is_too_small(gathered: Candidates, item: Evidence) -> bool:
 
 def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
     """Whether the shape lies at an upper end of a scan of all that the effect can be: what fits there goes on."""
-    ends, shape = _scanned(gathered, item), np.array(item.block.shape)
-    return len(ends) > 0 and bool(np.any(shape >= (1.0 - ROUNDING) * np.max(ends, axis=0)))
+    ends, within = _scanned(gathered, item), effect_named(item.block.name).ends_within_scan
+    if len(ends) == 0:
+        return False
+    shape = np.array(item.block.shape)[:within]
+    return bool(np.any(shape >= (1.0 - ROUNDING) * np.max(ends, axis=0)[:within]))
 
 
 def is_before_scan(gathered: Candidates, item: Evidence) -> bool:

@@ -33,6 +33,7 @@ class Motion:
         load_effort: predicted effort without friction, in the effort's unit (never the measured one).
         inertia_beyond: effort per acceleration of what hangs beyond the gear; 0 before anything is predicted.
         inertia: effort per acceleration of all that moves; 0 before anything is predicted.
+        load_inertia: effort per acceleration of the tip load, a part of both; 0 before anything is predicted.
         parting: acceleration at which the motor side would leave what hangs beyond the gear behind, were it not driven.
         predicted, effort_rate: predicted effort, all of it, and its rate of change.
         largest_effort: predicted, of all trials; 0 before anything is predicted.
@@ -73,6 +74,7 @@ class Motion:
     slow: float
     fast: float
     doubt: FloatArray | float = 0.0
+    load_inertia: float = 0.0
     misread_acceleration: FloatArray | float = 0.0
     measured_load: FloatArray | float = np.nan
     travelled: float = 0.0
@@ -282,7 +284,8 @@ class Effect:
         by_position: it goes by the position itself, which a shaft that turns on and on does not have.
         told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
         holds: shape that it takes in a model -> whether that is this effect still; None: any is.
-        ends_within_scan: what fits best at an upper end of its scan goes on beyond it, and is something else.
+        ends_within_scan: so many of the shape's first values end within the scan: what fits best at an upper end goes
+            on beyond it, and is something else.
     """
 
     name: str
@@ -315,7 +318,7 @@ class Effect:
     discrepancy: Callable[[Motion, Shape], FloatArray] | None = None
     least_of_friction: float = 0.0
     holds: Callable[[Shape], bool] | None = None
-    ends_within_scan: bool = False
+    ends_within_scan: int = 0
     shape_over: Callable[[Sequence[Motion]], Shape] | None = None
     provisional: bool = False
     misreads: Callable[[Motion, Shape], FloatArray] | None = None

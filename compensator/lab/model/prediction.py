@@ -42,6 +42,7 @@ def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
         if term.effect.carried:
             carried += part
     loads, beyond, wholes = [], [], []
+    of_loads = [_load_inertia(terms, motion, per_torque) for motion in motions]
     for motion, own in zip(motions, dataset.by_trial(carried), strict=True):
         known = _inertia_beyond(terms, motion, per_torque)
         whole = whole_inertia(terms, motion)
@@ -49,7 +50,7 @@ def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
         beyond.append((inertia, (own + inertia * motion.acceleration) / (inertia or np.inf)))
         loads.append(own + known * motion.acceleration)
         wholes.append(whole)
-    dataset = dataset.with_prediction(loads, dataset.by_trial(total), beyond, wholes)
+    dataset = dataset.with_prediction(loads, dataset.by_trial(total), beyond, wholes, of_loads)
     steep = [term for term in terms if term.effect.slope is not None and np.any(term.coefficients)]
     if not steep:
         return dataset
@@ -127,6 +128,14 @@ def _inertia_beyond(terms: Sequence[Term], motion: Motion, per_torque: float | N
     if beyond_kg_m2 > 0.0 and per_torque is not None:
         return per_torque * beyond_kg_m2
     return 0.0 if motion.facts.joint == "rotary" else whole_inertia(terms, motion)
+
+
+def _load_inertia(terms: Sequence[Term], motion: Motion, per_torque: float | None) -> float:
+    """Effort per acceleration of the tip load: by its weight where that tells, else as it was fitted."""
+    if per_torque is not None:
+        return min(per_torque * motion.load_inertia_kg_m2, whole_inertia(terms, motion))
+    inertia = next((term for term in terms if term.effect.name == "inertia"), None)
+    return 0.0 if inertia is None else float(inertia.coefficients[1] * motion.load_inertia_kg_m2)
 
 
 def whole_inertia(terms: Sequence[Term], motion: Motion) -> float:

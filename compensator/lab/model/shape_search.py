@@ -15,7 +15,8 @@ from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.rows.dataset import Dataset
 
 SWEEPS = 2  # the first shape is found while the others' are guesses
-REFINEMENTS = 24  # evaluations between the grid's values
+REFINEMENTS = 24  # evaluations between the grid's values, at least
+REFINED_EACH = 12  # and for each value of a shape
 TINY = 1e-12
 STEP = 0.2  # of the logarithm, at first
 
@@ -136,15 +137,22 @@ def power_within(column: FloatArray, rest: FloatArray, bounds: tuple[float, floa
 def between(grid: Sequence[Shape], start: Shape, loss: Callable[[Shape], float]) -> Shape:
     """The shape of least loss between a grid's values, from one of them, on a logarithmic scale.
 
-    The simplex method (Nelder, Mead 1965), in so many evaluations that the shape is known to a percent or so.
+    A value that the whole grid shares stays as it is. The simplex method (Nelder, Mead 1965), in so many evaluations
+    that the shape is known to a percent or so.
     """
     low, high = np.log(np.min(grid, axis=0)), np.log(np.max(grid, axis=0))
+    free = low < high
+    if not free.any():
+        return start
 
     def shape_of(logs: FloatArray) -> Shape:
-        return tuple(float(x) for x in np.exp(np.clip(logs, low, high)))
+        whole = np.log(np.array(start))
+        whole[free] = logs
+        return tuple(float(x) for x in np.exp(np.clip(whole, low, high)))
 
-    centre, axes = np.log(np.array(start)), np.eye(len(start))
-    simplex = np.clip(centre + np.vstack([np.zeros(len(start)), STEP * axes]), low, high)
+    centre, axes = np.log(np.array(start))[free], np.eye(int(free.sum()))
+    simplex = np.clip(centre + np.vstack([np.zeros(len(centre)), STEP * axes]), low[free], high[free])
     simplex[1:] += np.where(np.abs(simplex[1:] - centre).max(axis=1) < 1e-6, -STEP, 0.0)[:, None] * axes
-    options = {"maxfev": REFINEMENTS, "xatol": 0.01, "fatol": 0.0, "initial_simplex": simplex}
+    evaluations = max(REFINEMENTS, len(centre) * REFINED_EACH)
+    options = {"maxfev": evaluations, "xatol": 0.01, "fatol": 0.0, "initial_simplex": simplex}
     return shape_of(minimize(lambda logs: loss(shape_of(logs)), centre, method="Nelder-Mead", options=options).x)

@@ -15,6 +15,7 @@ from compensator.lab.recordings.recording import FloatArray
 PLAUSIBLE_SHARE = (0.3, 3.0)
 # of free play or compliance: up to so many times what the owner tells, teeth that bounce and data sheets explain it
 TOLD = 2.0
+STIFFEST = 1.5  # resonance times time step, up to which samples can show a swing
 ABOUT_KNOWN = (0.6, 1.0, 1.6)  # shares of the free play that is told: so little is it known
 
 
@@ -65,7 +66,10 @@ def parting_on_a_spring(parting: FloatArray, resonance_rad_s: float, damping: fl
         damping: of that resonance, of critical.
         step_s: between samples.
     """
-    warped = 2.0 / step_s * np.tan(0.5 * min(resonance_rad_s * step_s, 0.98 * np.pi))
+    stiffest = STIFFEST / step_s
+    if resonance_rad_s > stiffest:  # far below resonance only the compliance counts, which goes by its square
+        return (stiffest / resonance_rad_s) ** 2 * parting_on_a_spring(parting, stiffest, damping, step_s)
+    warped = 2.0 / step_s * np.tan(0.5 * resonance_rad_s * step_s)
     doubled = 2.0 / step_s
     square, lost = doubled**2, 2.0 * damping * warped * doubled
     numerator = np.array([square, -2.0 * square, square])

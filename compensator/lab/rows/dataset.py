@@ -286,6 +286,7 @@ class Dataset:
         predicted: Sequence[FloatArray],
         beyond: Sequence[tuple[float, FloatArray]],
         inertia: Sequence[float],
+        load_inertia: Sequence[float],
     ) -> "Dataset":
         """The same rows, with the predicted load and effort in every trial's motion (n,) each.
 
@@ -294,6 +295,7 @@ class Dataset:
             predicted: of each trial's motion.
             beyond: `inertia_beyond` and `parting` of each trial's motion.
             inertia: of each trial's motion.
+            load_inertia: of each trial's motion.
         """
         largest = max(float(np.abs(total).max(initial=0.0)) for total in predicted)
         trials = tuple(
@@ -304,6 +306,7 @@ class Dataset:
                     load_effort=load,
                     inertia_beyond=part,
                     inertia=whole,
+                    load_inertia=tip,
                     parting=parting,
                     predicted=total,
                     effort_rate=rate_of_change(total, trial.signals.rate_hz),
@@ -312,8 +315,8 @@ class Dataset:
                     doubt=0.0,
                 ),
             )
-            for trial, load, total, (part, parting), whole in zip(
-                self.trials, load_effort, predicted, beyond, inertia, strict=True
+            for trial, load, total, (part, parting), whole, tip in zip(
+                self.trials, load_effort, predicted, beyond, inertia, load_inertia, strict=True
             )
         )
         return replace(self, trials=trials)

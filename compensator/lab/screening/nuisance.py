@@ -11,6 +11,7 @@ import numpy as np
 from compensator.lab.effects.effect import Motion, MotionRows
 from compensator.lab.effects.electrical import measurement_delay
 from compensator.lab.effects.mechanics import backlash, elasticity
+from compensator.lab.effects.mechanics.beyond_teeth import TOLD_ARM
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.far_side import ABOUT_KNOWN
 from compensator.lab.recordings.recording import FloatArray
@@ -35,7 +36,7 @@ def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[
     named |= _far_side_weight(dataset)
     named |= _known_stiffness(dataset, STIFFNESS_ABOUT)
     if dataset.facts.backlash_rad:
-        gaps = [(share * dataset.facts.backlash_rad,) for share in KNOWN_PLAY.values()]
+        gaps = [(share * dataset.facts.backlash_rad, TOLD_ARM) for share in KNOWN_PLAY.values()]
         found = dataset.unchecked_columns(backlash.EFFECT, gaps)
         named |= {name: columns[:, 0] for name, columns in zip(KNOWN_PLAY, found, strict=True)}
     if show_in == "moving":
@@ -54,7 +55,7 @@ def _known_stiffness(dataset: Dataset, shares: Sequence[tuple[float, float]]) ->
     known_hz = elasticity.known_hz(dataset.facts)
     if known_hz is None:
         return {}
-    shapes = [(known_hz * np.sqrt(share), damping) for share, damping in shares]
+    shapes = [(known_hz * np.sqrt(share), damping, TOLD_ARM) for share, damping in shares]
     found = dataset.unchecked_columns(elasticity.EFFECT, shapes)
     return {f"known_stiffness_{index}": columns[:, 0] for index, columns in enumerate(found)}
 

@@ -62,15 +62,16 @@ def test_hardly_more_than_the_owner_tells_of_is_not_missing(name, shape, possibl
 @pytest.mark.parametrize(
     ("shape", "past"),
     [
-        ((38.0, 0.3), False),
-        ((3.0, 0.06), False),  # at the lower ends
-        ((40.0, 0.3), True),
-        ((40.0 * (1.0 - 1e-15), 0.3), True),  # a logarithm and back may make that of 40
-        ((8.0, 0.7), True),  # nothing swings
+        ((38.0, 0.3, 0.4), False),
+        ((38.0, 0.3, 1.0), False),  # the arm may be all that turns
+        ((3.0, 0.06, 0.4), False),  # at the lower ends
+        ((40.0, 0.3, 0.4), True),
+        ((40.0 * (1.0 - 1e-15), 0.3, 0.4), True),  # a logarithm and back may make that of 40
+        ((8.0, 0.7, 0.4), True),  # nothing swings
     ],
 )
 def test_a_shape_at_an_upper_end_of_a_scan_goes_on_beyond_it(shape, past):
-    trial = SimpleNamespace(motion=SimpleNamespace(step_s=0.01))
+    trial = SimpleNamespace(motion=SimpleNamespace(step_s=0.01, facts=Facts()))
     gathered: Any = SimpleNamespace(fit=SimpleNamespace(dataset=SimpleNamespace(trials=[trial])))
     block = Block("elasticity", np.zeros((1, 1)), 0, 1, shape)
     assert is_past_scan(gathered, Evidence(block, 50.0, 60.0, 0.001, np.zeros(1))) == past

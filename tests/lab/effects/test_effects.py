@@ -172,10 +172,10 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
         lambda m: [np.sign(m.velocity) * behind(np.exp(-np.abs(m.velocity) / 0.5), m, 0.05)],
     ),
     "pre_sliding": ((0.1,), lambda m: [dahl(m.position, 0.1)]),
-    "backlash": ((0.3,), crossing),
+    "backlash": ((0.3, 1.0), crossing),
     "dwell_strengthening": ((0.1,), lambda m: [np.zeros(41)]),
     "rate_dependent_breakaway": ((), lambda m: [np.zeros(41)]),
-    "elasticity": ((2.0, 0.05), twisted),
+    "elasticity": ((2.0, 0.05, 1.0), twisted),
     "encoder_eccentricity": (
         (2.0,),
         lambda m: [

@@ -32,6 +32,20 @@ def test_a_coefficient_beyond_its_bounds_explains_what_the_bound_does(dataset, l
     assert search.explained(columns) == pytest.approx(explained, rel=1e-9, abs=1e-9)
 
 
+def test_a_value_that_the_whole_grid_shares_costs_no_evaluations():
+    def loss(shape):
+        asked.append(shape)
+        return np.log(shape[0] / 2.7) ** 2 + np.log(shape[1] / 0.15) ** 2
+
+    asked, found = [], []
+    for more in ((), (1.0,)):
+        grid = [(a, b, *more) for a in (1.0, 2.0, 4.0) for b in (0.1, 0.2, 0.4)]
+        found.append(between(grid, (2.0, 0.1, *more), loss))
+    assert found[1] == (*found[0], 1.0)
+    assert [shape[:2] for shape in asked[len(asked) // 2 :]] == asked[: len(asked) // 2]
+    assert between([(2.0,)], (2.0,), loss) == (2.0,)
+
+
 def test_a_shape_is_found_between_a_grid_s_values_and_not_beyond_them():
     grid = [(hz, damping) for hz in (1.0, 2.0, 4.0) for damping in (0.1, 0.4)]
     near = between(grid, (2.0, 0.1), lambda shape: np.log(shape[0] / 2.7) ** 2 + np.log(shape[1] / 0.15) ** 2)

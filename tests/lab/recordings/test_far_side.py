@@ -59,3 +59,12 @@ def test_a_far_side_dies_away_as_it_is_damped(damping):
     peaks = np.flatnonzero((found[1:-1] > found[:-2]) & (found[1:-1] >= found[2:]) & (TIME_S[1:-1] > 0.12)) + 1
     decay = np.log(found[peaks[0]] / found[peaks[1]])  # half a period apart
     assert decay == pytest.approx(np.pi * damping / np.sqrt(1.0 - damping**2), rel=0.05)
+
+
+@pytest.mark.parametrize("of_rate", [0.2, 0.35, 0.8])
+def test_a_spring_too_stiff_to_be_seen_swinging_gives_way_by_its_stiffness(of_rate):
+    w, resonance = 2.0, 2.0 * np.pi * of_rate / STEP_S
+    found = parting_on_a_spring(np.sin(w * TIME_S), resonance, 0.25, STEP_S)
+    settled = TIME_S > 2.0
+    share = found[settled] @ np.sin(w * TIME_S[settled]) / np.sum(np.sin(w * TIME_S[settled]) ** 2)
+    assert share == pytest.approx(-((w / resonance) ** 2), rel=0.5)

@@ -3,19 +3,27 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.effects.mechanics.beyond_teeth import arm_shares, beyond_teeth
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.far_side import PLAUSIBLE_SHARE, TOLD, parting_in_free_play
 from compensator.lab.recordings.recording import FloatArray
 
 
 def shapes(motion: Motion) -> list[Shape]:
-    """Gaps from a two-thousandth to a fifth of the travel."""
-    return [(float(share * motion.position_span),) for share in np.geomspace(5e-4, 0.2, 19)]
+    """Gaps from a two-thousandth to a fifth of the travel, and shares of the arm in the inertia without load."""
+    gaps = motion.position_span * np.geomspace(5e-4, 0.2, 19)
+    return [(float(gap), share) for gap in gaps for share in arm_shares(motion.facts)]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
-    """What the gear carries less while the far side flies through the gap, and the blow that ends it; shape (gap,)."""
-    return -motion.inertia_beyond * parting_in_free_play(motion.parting, shape[0], motion.step_s)[None]
+    """What the gear carries less while the far side flies through the gap, and the blow that ends it.
+
+    Args:
+        motion: of the motor side.
+        shape: gap, and share of the arm in the inertia without load.
+    """
+    inertia, parting = beyond_teeth(motion, shape[1])
+    return -inertia * parting_in_free_play(parting, shape[0], motion.step_s)[None]
 
 
 def told(facts: Facts, shape: Shape) -> bool:
@@ -42,8 +50,8 @@ EFFECT = Effect(
     source="Nordin, Gutman 2002",
     shapes=shapes,
     smooth_shape=True,
-    shape_names=("free play",),
-    shape_units=("{position}",),
+    shape_names=("free play", "share of the arm in the inertia without load"),
+    shape_units=("{position}", "1"),
     confused_with=("pre_sliding", "elasticity"),
     standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
     builds_on="load",

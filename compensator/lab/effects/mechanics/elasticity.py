@@ -3,6 +3,7 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.effects.mechanics.beyond_teeth import arm_shares, beyond_teeth
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.far_side import PLAUSIBLE_SHARE, TOLD, parting_on_a_spring
 from compensator.lab.recordings.recording import FloatArray
@@ -34,18 +35,22 @@ def swings(shape: Shape) -> bool:
 
 
 def shapes(motion: Motion) -> list[Shape]:
-    """Anti-resonances [Hz] of the arm without load, up to 0.4 of the sample rate, and how they are damped."""
-    return [(float(hz), damping) for hz in np.geomspace(3.0, 0.4 / motion.step_s, SCANNED) for damping in DAMPINGS]
+    """Resonances [Hz] up to 0.4 of the sample rate, dampings, and shares of the arm in the inertia without load.
+
+    The resonance is that of all inertia without load on the spring, so that of a light arm alone lies higher.
+    """
+    resonances_hz = np.geomspace(3.0, 0.4 / motion.step_s, SCANNED)
+    return [(float(hz), d, share) for hz in resonances_hz for d in DAMPINGS for share in arm_shares(motion.facts)]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
-    """What the gear carries less while it winds up, for shape (anti-resonance [Hz], damping)."""
-    arm_kg_m2 = motion.facts.arm_inertia_kg_m2 or 0.0
-    heavier = 1.0 + motion.load_inertia_kg_m2 / arm_kg_m2 if arm_kg_m2 > 0.0 else 1.0
-    resonance_rad_s = 2.0 * np.pi * shape[0] / np.sqrt(heavier)
-    damping = shape[1] / np.sqrt(heavier)  # the damper stays as it is
-    parting = parting_on_a_spring(motion.parting, resonance_rad_s, damping, motion.step_s)
-    return -motion.inertia_beyond * parting[None]
+    """What the gear carries less while it winds up, for shape (resonance [Hz], damping, share of the arm)."""
+    inertia, parting = beyond_teeth(motion, shape[2])
+    unloaded = motion.inertia_beyond - motion.load_inertia
+    lighter = np.sqrt(unloaded / inertia) if min(inertia, unloaded) > 0.0 else 1.0
+    resonance_rad_s = 2.0 * np.pi * shape[0] * lighter
+    damping = shape[1] * lighter  # the damper stays as it is
+    return -inertia * parting_on_a_spring(parting, resonance_rad_s, damping, motion.step_s)[None]
 
 
 EFFECT = Effect(
@@ -66,13 +71,13 @@ EFFECT = Effect(
     excited_by="fast motion with a load: frequencies from a third of the anti-resonance up",
     shapes=shapes,
     smooth_shape=True,
-    shape_names=("anti-resonance of the arm without load", "its damping, of critical"),
-    shape_units=("Hz", "1"),
+    shape_names=("resonance of the inertia without load", "its damping, of critical", "share of the arm in it"),
+    shape_units=("Hz", "1", "1"),
     source="Spong 1987; Janot, Gautier, Brunot 2019",
     confused_with=("measurement_delay", "inertia"),
     builds_on="load",
     rows="moving",
     told=told,
-    ends_within_scan=True,
+    ends_within_scan=2,
     holds=swings,
 )

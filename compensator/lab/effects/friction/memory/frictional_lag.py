@@ -52,5 +52,5 @@ EFFECT = Effect(
     standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
     rows="moving",
     holds=holds,
-    ends_within_scan=True,
+    ends_within_scan=2,
 )

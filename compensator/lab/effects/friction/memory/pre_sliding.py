@@ -40,5 +40,5 @@ EFFECT = Effect(
     standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
     rows="moving",
     least_of_friction=0.5,
-    ends_within_scan=True,
+    ends_within_scan=1,
 )
