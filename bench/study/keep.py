@@ -7,6 +7,7 @@ from bench.study.models.kept import KeptModel
 from bench.study.models.ladder import BreakawayRung
 from compensator.lab.at_rest.breakaway_comparison import compare_breakaway
 from compensator.lab.comparison.comparison import repeatability_floor
+from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import error_interval
 from compensator.lab.model.held_out_error import HeldOut, relative_error
@@ -19,8 +20,11 @@ def keep_model(store: Store, study_id: int, parent_id: int | None, fit: Fit) -> 
 
 
 def kept_of(model: ModelRow) -> KeptModel:
-    """What the store has of a model."""
-    return KeptModel.model_validate(model.result)
+    """What the store has of a model, less shapes of an earlier version, in which their effect had fewer values."""
+    kept, known = KeptModel.model_validate(model.result), catalogue()
+    count = {name: len(known[name].shape_names) for name in kept.shapes if name in known}
+    shapes = {name: shape for name, shape in kept.shapes.items() if count.get(name, len(shape)) == len(shape)}
+    return kept if shapes == kept.shapes else kept.model_copy(update={"shapes": shapes})
 
 
 def stored(kept: KeptModel) -> Values:

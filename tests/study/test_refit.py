@@ -1,12 +1,14 @@
 """A model refitted to experiments of any length: against the fit in memory, in pieces, and what is refused."""
 
 import sys
+from dataclasses import replace
 
 import pytest
 
 from bench.store.errors import NotFoundError
 from bench.study.create import create_study
 from bench.study.errors import StudyError
+from bench.study.keep import kept_of
 from bench.study.refit import refit
 from tests.lab.synthetic import plans
 from tests.study.conftest import RIG, imported
@@ -53,3 +55,10 @@ def test_another_rig_and_unknown_experiments_are_refused(store, study_id):
         refit(store, study_id, [other])
     with pytest.raises(NotFoundError):
         refit(store, study_id, [998])
+
+
+def test_a_shape_of_an_earlier_version_with_fewer_values_is_not_kept(store, study_id):
+    model = store.models(study_id)[0]
+    shapes = {"backlash": [0.01], "stribeck": [0.2, 2.0], "of_a_package_that_is_gone": [1.0]}
+    found = kept_of(replace(model, result={**model.result, "shapes": shapes})).shapes
+    assert found.keys() == {"stribeck", "of_a_package_that_is_gone"}
