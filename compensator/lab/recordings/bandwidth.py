@@ -47,9 +47,7 @@ def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Fac
             f"recording '{slowest}' has {slowest_hz:.3g} samples a second; at least {2.0 * LOWEST_HZ:g} are needed "
             "to see motion: check that time_s is in seconds, or record faster"
         )
-    spread = np.linspace(0, len(recordings) - 1, min(len(recordings), MOST_RECORDINGS))
-    # not every second: kinds of trials may alternate
-    some: Sequence[Recording] = [recordings[at] for at in np.round(spread).astype(int)]
+    some = recordings[:: -(-len(recordings) // MOST_RECORDINGS)]
     highest_hz = 0.2 * slowest_hz
     some = _long_enough(some, highest_hz) or some  # all, if none is, for the error to be raised
     wanted_hz = min(HARMONICS * motion_bandwidth_hz(some, effort, facts, highest_hz), highest_hz)

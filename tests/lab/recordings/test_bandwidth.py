@@ -84,14 +84,3 @@ def test_what_no_cut_off_leaves_anything_of_is_refused():
     nothing = [Recording("nothing", "swing", {}, {name: values[:20] for name, values in made[0].channels.items()})]
     with pytest.raises(UnusableDataError, match="'nothing' has 20 samples; at least"):
         choose_cutoff_hz(nothing, effort, FACTS)
-
-
-def test_kinds_of_trials_that_alternate_are_both_asked():
-    made, effort = swing(3.0, Bench(noise=0.001))
-    random = np.random.default_rng(1)
-    mere = [
-        Recording(str(n), "ramps", {}, made[0].channels | {"torque_n_m": random.standard_normal(len(made[0]))})
-        for n in range(13)
-    ]
-    trials = [mere[0], *(one for other in mere[1:] for one in (made[0], other))]
-    assert choose_cutoff_hz(trials, effort, FACTS) > LOWEST_HZ
