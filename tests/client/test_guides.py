@@ -24,7 +24,7 @@ def test_the_curl_examples(bench, service, study):
     if shutil.which("curl") is None or shutil.which("bash") is None:
         pytest.skip("needs curl and bash")
     commands = re.findall(r"^    (curl (?:.*\\\n)*.*)$", REST, re.MULTILINE)
-    assert len(commands) == 5
+    assert len(commands) == 6
     for command in commands:
         script = f"{STRICT}\n{command.replace(ADDRESS, service.url)}"
         done = subprocess.run(
