@@ -1,26 +1,20 @@
 """Position-periodic friction."""
 
-import numpy as np
-
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.effects.round_the_turn import orders, waves
 from compensator.lab.recordings.recording import FloatArray
 
 MOTOR_ORDERS = (1, 2)  # an eccentric pinion; the wave generator of a harmonic drive
 
 
 def shapes(motion: Motion) -> list[Shape]:
-    """Orders per joint turn, and per motor turn where the gear ratio is known; cycles over a linear joint's travel."""
-    if motion.facts.joint != "rotary":
-        return [(2.0 * np.pi * cycles / motion.position_span,) for cycles in range(1, 31)]
-    joint: list[Shape] = [(float(order),) for order in range(3, 31)]
-    ratio = motion.facts.gear_ratio
-    return joint if ratio is None else joint + [(order * ratio,) for order in MOTOR_ORDERS if order * ratio > 30.0]
+    """Orders of the joint and of the motor."""
+    return orders(motion, MOTOR_ORDERS, fewest_cycles=1)
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
     """Cosine and sine of the k-th order against the motion, averaged over a sample."""
-    phase = shape[0] * motion.position
-    return np.array([np.cos(phase), np.sin(phase)]) * motion.averaged(shape[0]) * motion.direction
+    return waves(motion, shape[0]) * motion.direction
 
 
 EFFECT = Effect(
