@@ -87,9 +87,11 @@ class Session:
         places = [self.data.place(item) for item in (STATUSWORD, POSITION)]
         self.status_place, self.position_place = (place for place in places if place is not None)
         self.measurement = Measurement(self.found, self.data.place)
-        self.poll = SlowPoll(self.measurement.slow, 1.0 / settings.poll_hz, settings.sdo_answer_s)
+        # its answers also tell which TPDOs are lost: with nothing else to ask for, the statusword is
+        asked_for = self.measurement.slow or (STATUSWORD,)
+        self.poll = SlowPoll(asked_for, 1.0 / settings.poll_hz, settings.sdo_answer_s)
         self._read_slow_once()
-        self.cycle = SyncCycle(link, self.data.tpdos, answer_wait_s(period_s), period_s)
+        self.cycle = SyncCycle(link, self.data.tpdos, answer_wait_s(period_s), period_s, settings.sdo_answer_s)
         self.speaking = self.data.idle
         self.start()
         self.round_trip_s = self._try_cycles(period_s)
@@ -155,7 +157,7 @@ class Session:
         """
         cycle = self.cycle
         return self.measurement.sample(
-            cycle.values, self.poll.readings, status, cycle.sync_s, perf_counter(), cycle.number
+            cycle.values, self.poll.readings, status, cycle.sync_s, cycle.earliest_s, perf_counter(), cycle.number
         )
 
     def look_round(self) -> None:
@@ -188,6 +190,7 @@ class Session:
         request = self.poll.request(now_s)
         if request is not None:
             self.link.send_message(0x600 + self.settings.node_id, request)
+            self.cycle.asked()
 
     def fault_name(self) -> str:
         """The fault in words: by the last EMCY since it was switched on or cleared, by 0x603F, or by 0x1003."""
@@ -294,7 +297,9 @@ class Session:
             self.emergency = emergency
 
     def _take_sdo(self, data: bytes) -> None:
-        if not self.poll.take(data, perf_counter()):
+        if self.poll.take(data, perf_counter()):
+            self.cycle.overtaken()
+        else:
             self.access.take(data)
 
     def _error_code(self) -> int | None:

@@ -4,6 +4,7 @@ Drives on one bus answer the same SYNC. The first drive that is asked in a cycle
 measured at that SYNC; their demand goes out at once, and acts at the next one.
 """
 
+from collections import deque
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Final
@@ -39,24 +40,29 @@ class SyncCycle:
     """Sends SYNC, and knows which TPDOs answer it.
 
     TPDOs carry no count. So a SYNC is sent only when the one before has been answered by every drive of the bus, or has
-    been given up after a second wait: then whatever comes in belongs to the latest one.
+    been given up after a second wait: then whatever comes in is taken for the answer to the latest one.
+
+    A line on which all comes late looks the same as one that has lost as many answers. Answers come in the order in
+    which they were asked for: so `values` may be as old as the first SYNC whose answer may still be under way.
 
     Args:
         link: open.
         tpdos: what the drive sends at each SYNC.
         wait_s: longest wait for them in a cycle [s].
         period_s: control period: a SYNC for another drive is used for half of it [s].
+        lost_s: an answer that takes longer does not come [s].
 
     Attributes:
         values: of each TPDO, as last received.
-        sync_s: when the SYNC was sent that `values` answer [s].
+        sync_s: when the SYNC was sent that `values` answer, as far as is known [s].
+        earliest_s: when the earliest SYNC was sent that they may answer [s].
         received_s: when the last of `values` came in [s].
         number: of the SYNC that `values` answer.
     """
 
-    def __init__(self, link: CanLink, tpdos: tuple[Pdo, ...], wait_s: float, period_s: float) -> None:
+    def __init__(self, link: CanLink, tpdos: tuple[Pdo, ...], wait_s: float, period_s: float, lost_s: float) -> None:
         self.values: list[tuple[int, ...]] = [() for _ in tpdos]
-        self.sync_s = self.received_s = perf_counter()
+        self.sync_s = self.earliest_s = self.received_s = perf_counter()
         self.number = 0
         self.counts = CycleCounts()
         self._link = link
@@ -67,6 +73,9 @@ class SyncCycle:
         self._is_late = False  # the present SYNC has been waited for in vain
         self._missing: set[int] = set()
         self._in_doubt = False  # the last SYNC has been given up: its answer may still come
+        self._lost_s = lost_s
+        self._under_way: deque[float] = deque()  # when each SYNC was sent whose answer may still come
+        self._asked_at = 0  # the SYNC before the last request of another kind
         self._arrived: dict[int, tuple[int, ...]] = {}
         self._sent_s = 0.0
         self._listened_s = 0.0
@@ -110,11 +119,23 @@ class SyncCycle:
     def begin(self, sent_s: float) -> None:
         """A SYNC has been sent."""
         self._in_doubt = bool(self._missing)
+        while self._under_way and sent_s - self._under_way[0] > self._lost_s:
+            self._under_way.popleft()
+        self._under_way.append(sent_s)
         self._missing = set(self._places)
         self._arrived.clear()
         self._sent_s = sent_s
         self._is_new, self._is_late = True, False
         self.counts.sent += 1
+
+    def asked(self) -> None:
+        """A request has been sent whose answer comes after those to every SYNC so far."""
+        self._asked_at = self.counts.sent
+
+    def overtaken(self) -> None:
+        """It has been answered: what has not come of the SYNC frames before it is lost."""
+        while len(self._under_way) > self.counts.sent - self._asked_at:
+            self._under_way.popleft()
 
     @property
     def silence_s(self) -> float:
@@ -163,6 +184,7 @@ class SyncCycle:
             self.counts.answered += 1
         self.received_s = perf_counter()
         self.sync_s = self._sent_s
+        self.earliest_s = self._under_way.popleft() if self._under_way else self._sent_s
         self.number = self.counts.sent
         self._listened_s = 0.0
 

@@ -68,7 +68,7 @@ class Measurement:
 
     def sample(
         self, values: Sequence[tuple[int, ...]], slow: dict[DriveObject, Reading], status: Status, sync_s: float,
-        now_s: float, number: int,
+        earliest_s: float, now_s: float, number: int,
     ) -> Sample:  # fmt: skip
         """The sample of a cycle.
 
@@ -76,7 +76,8 @@ class Measurement:
             values: of each TPDO.
             slow: what the poll has.
             status: state of the power stage.
-            sync_s: when the SYNC was sent at which the drive measured [s].
+            sync_s: when the SYNC was sent at which the drive measured, as far as is known [s].
+            earliest_s: when the earliest SYNC was sent at which it may have measured [s].
             now_s: the time now [s].
             number: of the SYNC.
         """
@@ -85,7 +86,7 @@ class Measurement:
         duty = copysign(_value(values, self._duty_place) * self._duty_scale, current_a)
         supply_v, supply_age_s = _slow(slow, self._supply, now_s)
         temperature_c, temperature_age_s = _slow(slow, self._temperature, now_s)
-        age_s = now_s - sync_s
+        age_s = now_s - earliest_s
         return Sample(
             sync_s,
             age_s,
