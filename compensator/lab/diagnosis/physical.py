@@ -65,13 +65,15 @@ def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
 
 
 def is_before_scan(gathered: Candidates, item: Evidence) -> bool:
-    """Whether an effect in the place of dry friction lies at the lower end of its scan: something shorter fits as well.
+    """Whether an effect that the chain's columns could be taken for lies at the lower end of its scan in all values.
 
-    It is found there with a part of its friction, and cannot be told from what the measuring chain makes of a sign.
+    There something shorter fits as well, and it cannot be told from what the measuring chain makes of a sign.
     """
-    ends, shape = _scanned(gathered, item), item.block.shape
-    replaces = effect_named(item.block.name).least_of_friction > 0.0
-    return replaces and len(ends) > 0 and bool(shape[0] <= (1.0 + ROUNDING) * np.min(ends[:, 0]))
+    ends, effect = _scanned(gathered, item), effect_named(item.block.name)
+    if len(ends) == 0 or not effect.standing_in:
+        return False
+    within = effect.ends_within_scan
+    return bool(np.all(np.array(item.block.shape)[:within] <= (1.0 + ROUNDING) * np.min(ends, axis=0)[:within]))
 
 
 def _scanned(gathered: Candidates, item: Evidence) -> FloatArray:

@@ -88,6 +88,17 @@ def test_a_distance_at_the_lower_end_of_a_scan_may_be_shorter(monkeypatch, dista
     assert is_physical(gathered, item) != before
 
 
+@pytest.mark.parametrize(
+    ("shape", "before"),
+    [((0.1, 0.01), True), ((0.1, 0.02), False), ((0.3, 0.01), False)],  # a lag or a speed that is resolved tells
+)
+def test_a_shape_with_every_value_at_a_lower_end_may_be_of_the_measuring_chain(shape, before):
+    trial = SimpleNamespace(motion=SimpleNamespace(slow=0.05, fast=2.0))
+    gathered: Any = SimpleNamespace(fit=SimpleNamespace(dataset=SimpleNamespace(trials=[trial])))
+    item = Evidence(Block("frictional_lag", np.zeros((1, 1)), 0, 1, shape), 50.0, 60.0, 0.001, np.zeros(1))
+    assert is_before_scan(gathered, item) == before
+
+
 @pytest.mark.parametrize(("excess", "possible"), [(0.02, True), (-0.02, False)])
 def test_friction_that_rises_over_a_session_is_no_warm_up(excess, possible):
     column = np.exp(-np.arange(200.0) / 50.0)
