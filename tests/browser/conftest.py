@@ -1,4 +1,4 @@
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -79,16 +79,37 @@ class Pages:
         page.goto(f"{(service or self._service).url}/{view}")
         return page
 
+    def say_what_they_show(self) -> None:
+        """Into the report of a test that failed: the bench, each page, and what had the focus."""
+        print(self._service.runner.status())
+        for one in self._opened:
+            for page in getattr(one, "pages", [one]):
+                focus = page.evaluate("document.activeElement.outerHTML.slice(0, 200)")
+                print(page.url, page.locator("body").inner_text()[:2000], focus, self.complaints, sep="\n")
+
     def close(self) -> None:
         for one in self._opened:
             one.close()
 
 
+FAILED = pytest.StashKey[bool]()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    report = yield
+    if report.when == "call":
+        item.stash[FAILED] = report.failed
+    return report
+
+
 @pytest.fixture
-def open_page(chromium: Any, service: RunningService) -> Iterator[Pages]:
+def open_page(request: pytest.FixtureRequest, chromium: Any, service: RunningService) -> Iterator[Pages]:
     """Opens the page; at the end of the test, nothing may have been complained about."""
     pages = Pages(chromium, service)
     yield pages
+    if request.node.stash.get(FAILED, False):
+        pages.say_what_they_show()
     pages.close()
     assert pages.complaints == []
 
