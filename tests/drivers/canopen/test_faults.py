@@ -201,6 +201,18 @@ def test_a_lost_answer_gives_the_old_sample_with_its_age_and_is_counted(node, dr
     assert drive.counts.missed > missed
 
 
+def test_lost_answers_are_known_to_be_lost_when_the_next_object_is_told(node, drive_of):
+    drive = _moving(drive_of(**PATIENT))
+    node.drop_answers = 10
+    ages_s = []
+    deadline_s = time.perf_counter() + 1.0
+    while time.perf_counter() < deadline_s:
+        ages_s.append(drive.exchange(PUSH).age_s)
+        time.sleep(0.003)
+    assert max(ages_s) > 0.1, "ten waits in vain"
+    assert min(ages_s[-50:]) < 0.01  # and not ten periods, as if answers were still under way
+
+
 def test_an_answer_that_comes_late_is_not_taken_for_the_next_one(node, drive_of):
     drive = _moving(drive_of(**PATIENT))
     before, late = _fresh(drive), drive.counts.late
