@@ -68,6 +68,15 @@ class Bench:
         """Several cycles; of each the age that is told and the true one [s]."""
         return [self._one() for _ in range(count)]
 
+    def lose(self, count):
+        """Cycles in time, then some whose answers are lost."""
+        self.run(20)
+        self.line.lose = count
+        self.run(count)
+
+    def tells_true_ages(self):
+        return all(told == pytest.approx(true) for told, true in self.run(5))
+
     def _one(self):
         began_s = self.line.now_s
         self.cycle.run(0x205, b"")
@@ -98,12 +107,11 @@ def test_what_is_late_is_as_old_as_it_is_however_long_ago_the_delay_began(bench)
 
 
 def test_after_a_lost_answer_the_age_is_at_least_the_true_one_until_another_answer_tells(bench):
-    bench.run(20)
-    bench.line.lose = 3
-    bench.run(6)
+    bench.lose(3)
+    bench.run(3)
     assert all(told >= true + 2.0 * PERIOD_S for told, true in bench.run(5))
     bench.line.ask()
-    assert all(told == pytest.approx(true) for told, true in bench.run(5))
+    assert bench.tells_true_ages()
 
 
 def test_an_answer_of_another_kind_on_a_late_line_does_not_make_it_look_prompt(bench):
@@ -117,9 +125,7 @@ def test_an_answer_of_another_kind_on_a_late_line_does_not_make_it_look_prompt(b
 
 
 def test_what_is_older_than_any_answer_is_lost(bench):
-    bench.run(20)
-    bench.line.lose = 3
-    bench.run(3)
+    bench.lose(3)
     bench.line.now_s += 2.0 * LOST_S
     bench.run(1)
-    assert all(told == pytest.approx(true) for told, true in bench.run(5))
+    assert bench.tells_true_ages()
