@@ -4,6 +4,8 @@ import re
 
 import pytest
 
+from tests.browser.browser import intercept
+
 pytestmark = pytest.mark.browser
 
 
@@ -45,7 +47,8 @@ def test_what_is_refused_stands_beneath_it_and_nothing_is_lost(service, open_pag
 def test_older_experiments_are_a_page_away(service, open_page):
     newest = service.run("steps", repeats=1)["experiment_id"]
     page = open_page("#bench")
-    page.route(
+    intercept(
+        page,
         re.compile(r"/experiments\?.*limit=10$"),
         lambda route: route.continue_(url=route.request.url.replace("limit=10", "limit=1")),
     )

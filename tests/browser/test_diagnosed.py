@@ -2,6 +2,7 @@
 
 import pytest
 
+from tests.browser.browser import intercept
 from tests.service.recorded_joint import study_path
 
 pytestmark = pytest.mark.browser
@@ -23,7 +24,7 @@ def diagnosed(open_page, study):
             answer = route.fetch()
             route.fulfill(response=answer, json={**answer.json(), **changes})
 
-        page.route("**/diagnose?*", change)
+        intercept(page, "**/diagnose?*", change)
         page.get_by_role("button", name="Diagnose").click()
         page.locator(".diagnosed .sentence").wait_for()
         return page
@@ -66,8 +67,8 @@ def test_of_the_joint_of_a_challenge_one_is_told_what_was_hidden(open_page, serv
     experiment = service.client.get(f"/trials/{trial}").json()["experiment_id"]
     made = {"items": [{"challenge_id": 7, "experiment_id": experiment, "difficulty": "easy", "created_utc": None}]}
     page = open_page("#home", width=1440)
-    page.route("**/api/v1/challenges", lambda route: route.fulfill(json=made))
-    page.route("**/diagnose?*", lambda route: _nothing(route))
+    intercept(page, "**/api/v1/challenges", lambda route: route.fulfill(json=made))
+    intercept(page, "**/diagnose?*", lambda route: _nothing(route))
     page.evaluate("(hash) => { location.hash = hash; }", f"#study/{study}/diagnose")
     page.get_by_role("button", name="Diagnose").click()
     page.get_by_role("link", name="Guess and reveal").click()

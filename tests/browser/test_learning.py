@@ -6,6 +6,7 @@ import pytest
 
 from bench.evaluation.challenge import difficulty
 from bench.evaluation.challenge.difficulty import Difficulty
+from tests.browser.browser import intercept
 from tests.service.running_service import TOKEN
 
 pytestmark = pytest.mark.browser
@@ -53,7 +54,7 @@ def test_a_challenge_is_made_guessed_at_and_revealed(open_page, monkeypatch):
 def test_what_takes_long_is_cancelled_and_says_so(open_page):
     page = open_page("#learn")
     page.set_default_timeout(60_000)
-    page.route("**/api/v1/challenges", lambda route: None if route.request.method == "POST" else route.fallback())
+    intercept(page, "**/api/v1/challenges", lambda route: None if route.request.method == "POST" else route.fallback())
     page.get_by_role("button", name="New challenge").click()
     page.get_by_role("progressbar", name="Drawing a joint").wait_for()
     page.get_by_text("s left").wait_for()
@@ -74,7 +75,7 @@ def test_what_lacks_a_token_goes_on_once_there_is_one(open_page):
         if len(posts) == 1:
             route.fulfill(status=401, json={"detail": "send 'Authorization: Bearer <token>'"})
 
-    page.route("**/api/v1/challenges", answer)
+    intercept(page, "**/api/v1/challenges", answer)
     page.get_by_role("button", name="New challenge").click()
     page.get_by_text("This needs the token").wait_for()
     page.get_by_label("Token: to start").fill(TOKEN)

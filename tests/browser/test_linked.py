@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from tests.browser.browser import imported
+from tests.browser.browser import imported, intercept
 from tests.service.recorded_joint import study_path
 
 pytestmark = pytest.mark.browser
@@ -96,7 +96,7 @@ def test_what_takes_long_says_what_it_does_and_how_much_is_left_and_is_cancelled
     told = {"job": "b", "what": "any", "state": "computing", "stage": "Judging the measuring chain", "share": 0.6,
             "stages_done": 4, "stages": 8, "passed_s": 3.0, "left_s": 2.0}  # fmt: skip
     body = f"event: progress\ndata: {json.dumps(told)}\n\n"
-    page.route("**/live/jobs/*/stream", lambda route: route.fulfill(content_type="text/event-stream", body=body))
+    intercept(page, "**/live/jobs/*/stream", lambda route: route.fulfill(content_type="text/event-stream", body=body))
     page.evaluate(HELD, asked)
     page.get_by_role("link", name=step).click()
     if button == "Simulate":

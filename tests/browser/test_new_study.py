@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from tests.browser.browser import intercept
 from tests.service.recorded_joint import recording_set_zip
 
 pytestmark = pytest.mark.browser
@@ -68,7 +69,7 @@ def test_hundreds_of_experiments_make_no_wall_of_boxes(open_page):
            "started_utc": "2026-01-01T00:00:00Z"}  # fmt: skip
     items = [{**one, "experiment_id": number} for number in range(1, 301)]
     page = open_page("#home")
-    page.route("**/api/v1/experiments?*", lambda route: route.fulfill(json={"items": items}))
+    intercept(page, "**/api/v1/experiments?*", lambda route: route.fulfill(json={"items": items}))
     page.evaluate("location.hash = '#study'")
     page.get_by_text("280 more: find them by their words.").wait_for()
     assert page.locator("main :is(input, button, select, a)").count() < 60

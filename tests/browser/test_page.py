@@ -2,6 +2,7 @@
 
 import pytest
 
+from tests.browser.browser import intercept
 from tests.service.recorded_joint import recording_set_zip
 from tests.service.running_service import TOKEN
 
@@ -105,7 +106,7 @@ def test_the_engineer_adds_the_missing_effect_and_the_error_falls(open_page):
 def test_the_page_says_when_the_service_is_gone(service, open_page):
     page = open_page()
     page.locator(".badge.idle").wait_for()
-    page.route("**/api/**", lambda route: route.abort())
+    intercept(page, "**/api/**", lambda route: route.abort())
     page.evaluate("window.stop()")  # ends the open stream
     page.get_by_text("STALE").wait_for()
     page.keyboard.press("Escape")

@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from tests.browser.browser import imported
+from tests.browser.browser import imported, intercept
 from tests.service.running_service import TOKEN
 
 pytestmark = pytest.mark.browser
@@ -58,7 +58,7 @@ def test_powered_off_is_not_said_of_a_joint_that_runs_again(service, open_page):
 def test_not_confirmed_is_taken_back_when_the_joint_has_come_to_rest(service, open_page):
     page = open_page("#bench?kind=steps&repeats=20")
     start(page)
-    page.route("**/api/v1/stop", lambda route: route.abort())
+    intercept(page, "**/api/v1/stop", lambda route: route.abort())
     page.keyboard.press("Escape")
     page.get_by_text("Stop NOT confirmed").wait_for()
     service.client.post("/stop").raise_for_status()

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from bench.service.auth.tokens import Role, digest_of, make_token
-from tests.browser.browser import imported
+from tests.browser.browser import imported, intercept
 from tests.service.running_service import running_service
 
 pytestmark = pytest.mark.browser
@@ -28,7 +28,7 @@ def test_a_stop_whose_request_hangs_is_asked_for_again_until_the_drive_confirms(
         else:
             hung.append(route)  # never answered; the sentence stands while the second one is waited for
 
-    page.route("**/api/v1/stop", hang_twice)
+    intercept(page, "**/api/v1/stop", hang_twice)
     page.keyboard.press("Escape")
     page.get_by_text(re.compile("Stop NOT confirmed: no answer within .* Asking again")).wait_for()
     page.get_by_text("Stop accepted and confirmed: the drive is powered off").wait_for()
@@ -38,7 +38,9 @@ def test_a_stop_whose_request_hangs_is_asked_for_again_until_the_drive_confirms(
 def test_a_stop_is_not_called_confirmed_while_the_run_goes_on(service, open_page):
     page = open_page()
     start(page, repeats=400)  # it must not end by itself while the drive is asked, on the quickest machine
-    page.route("**/api/v1/stop", lambda route: route.fulfill(json={"detail": "Stop accepted.", "was_running": True}))
+    intercept(
+        page, "**/api/v1/stop", lambda route: route.fulfill(json={"detail": "Stop accepted.", "was_running": True})
+    )
     page.keyboard.press("Escape")
     page.get_by_text("NOT confirmed by the drive within").wait_for()
     page.unroute("**/api/v1/stop")
@@ -49,7 +51,7 @@ def test_a_stop_is_not_called_confirmed_while_the_run_goes_on(service, open_page
 def test_other_requests_that_hang_do_not_hold_up_a_stop(service, open_page):
     page = open_page()
     start(page)
-    page.route("**/api/v1/effects*", lambda route: None)
+    intercept(page, "**/api/v1/effects*", lambda route: None)
     page.evaluate(
         f"{imported('app/api')}.then((api) => {{ for (let n = 0; n < 12; n++) api.get('/effects', {{n}}); }})"
     )

@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from tests.browser.browser import intercept
 from tests.service.recorded_joint import recording_set_zip
 
 pytestmark = pytest.mark.browser
@@ -54,7 +55,7 @@ def test_a_change_is_undone_from_any_step_and_done_again(service, open_page, stu
 
 def test_a_change_is_undone_while_its_comparison_is_still_under_way(open_page, studies, changed):
     page, held = open_page("#study", width=1440), []
-    page.route("**/compare?*", lambda route: held.append(route))
+    intercept(page, "**/compare?*", lambda route: held.append(route))
     page.goto(page.url.split("#")[0] + f"#study/{studies[0]}/result")
     page.get_by_role("button", name="Undo + viscous asymmetry").click()
     page.wait_for_timeout(500)  # in which the model was removed, and its comparison asked for what is gone

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from tests.browser.browser import imported
+from tests.browser.browser import imported, intercept
 from tests.service.recorded_joint import study_path
 
 pytestmark = pytest.mark.browser
@@ -119,7 +119,7 @@ def test_the_outcome_of_a_trial_and_what_a_challenge_hides_are_not_outside_a_pho
     assert box["x"] >= 0
     assert box["x"] + box["width"] <= PHONE["width"]
     made = {"challenge_id": 1, "experiment_id": 1, "difficulty": "easy", "created_utc": "2026-01-01T00:00:00Z"}
-    page.route("**/api/v1/challenges", lambda route: route.fulfill(json={"items": [made]}))
+    intercept(page, "**/api/v1/challenges", lambda route: route.fulfill(json={"items": [made]}))
     page.evaluate("location.hash = '#learn'")
     reveal = page.get_by_role("button", name="Guess at challenge 1")
     reveal.wait_for()
