@@ -2,7 +2,8 @@
 
 Friction and end stops hold a joint, too, and the position does not change either. Two things tell the sensor: the
 drive's speed goes on, by more than a filter that makes it late would have it fade away, or the position comes back in
-one leap, which no joint does that starts from rest.
+one leap. A joint that breaks away may leap between two samples, too, and stands again after it (stick-slip); one that
+went on unseen was under way before, or still is.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,6 +24,7 @@ MISSED = 10.0  # times the step that 19 in 20 samples in motion stay below: what
 LEAP = 10.0  # times the step that 19 in 20 samples in motion stay below
 ALONE = 3.0  # times the steps after it: a joint that starts goes on
 AFTER = 3  # steps that are looked at after a leap
+UNDER_WAY = 0.5  # of the mean speed that a leap hides: so fast goes the joint before, or after it
 LEAST_SHARE = (
     0.1  # of the speed that 19 in 20 samples in motion stay below: less may be where the drive's speed has its zero
 )
@@ -63,7 +65,7 @@ def _stuck(recording: Recording, unit: str) -> Iterator[tuple[float, float, str]
         missed, fast = (0.0, 0.0) if speed is None else _covered(time_s, position, speed, slice(first, last + 1))
         if missed > MISSED * typical and fast > LEAST_SHARE * typical / float(np.median(period_s)):
             yield time_s[first], time_s[last], f"velocity_{unit}_s covers {missed:.3g} {unit} meanwhile"
-        elif last < len(step) and not gap[last] and _is_leap(step[last:], typical):
+        elif last < len(step) and not gap[last] and _is_leap(step[last:], typical) and _goes_on(position, first, last):
             yield time_s[first], time_s[last], f"it goes on with a leap of {step[last]:.3g} {unit}"
 
 
@@ -121,3 +123,12 @@ def _is_leap(step: FloatArray, typical: float) -> bool:
     """Whether the first step is far larger than any motion's, and stands alone."""
     leap, after = float(abs(step[0])), np.abs(step[1 : 1 + AFTER])
     return leap > LEAP * typical and leap > ALONE * float(np.nanmax(after, initial=0.0))
+
+
+def _goes_on(position: FloatArray, first: int, last: int) -> bool:
+    """Whether the joint is under way before it seems to stand, or after the leap: half as long, the same way."""
+    half = (last - first) // 2
+    leap = position[last + 1] - position[last]
+    before = position[first] - position[max(first - half, 0)]
+    after = position[min(last + 1 + half, len(position) - 1)] - position[last + 1]
+    return any(bool(way / leap >= UNDER_WAY * half / (last - first)) for way in (before, after))

@@ -76,6 +76,12 @@ def test_behind_a_filter_a_stuck_sensor_is_told_all_the_same():
     assert stuck_positions([recording(held(SWING, 4.0, 6.0), filtered(SPEED, 0.3))], FACTS)
 
 
+def stick_slip() -> np.ndarray:
+    """A joint that breaks away once in a second, by more than it moves otherwise, and springs back a little."""
+    slip = QUANTUM * 20.0 * np.floor(TIME_S)
+    return slip + QUANTUM * np.round(np.cos(2.0 * np.pi * 20.0 * TIME_S)) * (np.mod(TIME_S, 1.0) < 0.5)
+
+
 def filled_up(position: np.ndarray) -> np.ndarray:
     """Samples that were lost, three in a row, and stand for as long as the last one before."""
     return position[np.arange(len(position)) // 4 * 4]
@@ -95,11 +101,12 @@ def filled_up(position: np.ndarray) -> np.ndarray:
         recording(np.round(SWING / 0.05) * 0.05, SPEED),
         recording(0.0 * SWING, 1e-3 * np.random.default_rng(0).standard_normal(len(SWING))),
         recording(np.where(np.arange(len(SWING)) % 400 < 200, np.nan, SWING), SPEED),
+        recording(stick_slip()),
     ],
     ids=[
         "motion", "motion without speed", "rests", "rests without speed", "late speed", "speed with a wrong zero",
         "speed that fades away at a stop",
-        "lost samples", "coarse encoder", "no motion", "gaps",
+        "lost samples", "coarse encoder", "no motion", "gaps", "stick-slip",
     ],
 )  # fmt: skip
 def test_a_joint_that_rests_has_no_stuck_sensor(made):
