@@ -29,7 +29,7 @@ def _problem(detail: Any, prefix: str, model: type[BaseModel] | None) -> str:
     name = str(location[-1]) if location else ""
     unit = unit_of(name)
     if detail["type"] == "extra_forbidden":
-        return f"{key}: unknown key; {_instead(name, _allowed(model, detail['loc']) if model is not None else [])}"
+        return f"{key}: {unknown(name, keys_beside(model, detail['loc']) if model is not None else [])}"
     if detail["type"] == "missing":
         return f"{key}: missing; give a value{f' in {unit}' if unit else ''}"
     wanted = detail["msg"].removeprefix("Value error, ").removeprefix("Input ")
@@ -39,19 +39,19 @@ def _problem(detail: Any, prefix: str, model: type[BaseModel] | None) -> str:
     return f"{key}: found {_shown(detail.get('input'))}; {wanted}"
 
 
-def _instead(name: str, allowed: list[str]) -> str:
-    """What to do about an unknown key: the allowed one that is spelled most like it, and all of them."""
+def unknown(name: str, allowed: list[str]) -> str:
+    """What is said of an unknown key: the allowed one that is spelled most like it, and all of them."""
     near = get_close_matches(name, allowed, 1)
     advice = f"did you mean '{near[0]}'?" if near else "remove it or correct its spelling"
-    return f"{advice} (allowed: {', '.join(allowed)})" if allowed else advice
+    return f"unknown key; {advice} (allowed: {', '.join(allowed)})" if allowed else f"unknown key; {advice}"
 
 
-def _allowed(model: type[BaseModel], location: tuple[int | str, ...]) -> list[str]:
+def keys_beside(model: type[BaseModel], location: tuple[int | str, ...]) -> list[str]:
     """The keys beside an unknown one; none where several shapes are possible there."""
     here: list[Any] = [model]
     for part in location[:-1]:
         here = [one for outer in here for one in _inside(outer, part)] or here  # an index leads no deeper
-    models = [one for annotation in here for one in _models_in(annotation)]
+    models = [one for annotation in here for one in models_in(annotation)]
     return [field.alias or name for name, field in models[0].model_fields.items()] if len(models) == 1 else []
 
 
@@ -63,7 +63,7 @@ def _inside(annotation: Any, part: int | str) -> Iterator[Any]:
         for inner in get_args(annotation):
             yield from _inside(inner, part)
     else:
-        for model in _models_in(annotation):
+        for model in models_in(annotation):
             yield from (field.annotation for name, field in model.model_fields.items() if part in (name, field.alias))
 
 
@@ -71,12 +71,12 @@ def _has_tag(annotation: Any, tag: int | str) -> bool:
     return any(isinstance(one, Tag) and one.tag == tag for one in getattr(annotation, "__metadata__", ()))
 
 
-def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+def models_in(annotation: Any) -> Iterator[type[BaseModel]]:
     """The models that a field can hold, in a list or a dictionary, too."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         yield annotation
     for inner in get_args(annotation):
-        yield from _models_in(inner)
+        yield from models_in(inner)
 
 
 def _is_tag(part: Any) -> bool:

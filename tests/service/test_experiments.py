@@ -223,3 +223,30 @@ def test_the_person_at_the_bench_is_asked_over_rest(idle, monkeypatch):
         assert time.monotonic() < deadline_s
     idle.runner.stop()
     assert idle.runner.wait(10.0)
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "said", "keys"),
+    [
+        ("/lease", {"duraton_s": 5}, "unknown key; did you mean 'duration_s'?", ["duration_s", "holder", "take_over"]),
+        ("/experiments", {"kind": "steps", "paramters": {}}, "did you mean 'parameters'?", None),
+        ("/experiments", {"kind": "steps", "parameters": {"repeat": 2}}, "did you mean 'repeats'?", None),
+        ("/queue", {"items": [{"kind": "steps", "paramters": {}}]}, "did you mean 'parameters'?", None),
+    ],
+)
+def test_of_an_unknown_key_the_known_ones_are_told(service, path, body, said, keys):
+    answer = service.client.post(path, json=body)
+    assert answer.status_code == 422
+    problem = answer.json()
+    assert said in problem["detail"]
+    [one] = problem["errors"]
+    assert said in one["message"]
+    assert one["field"] not in one["allowed"]["keys"]
+    if keys is not None:
+        assert one["allowed"]["keys"] == keys
+
+
+def test_of_a_missing_key_no_value_is_shown(service):
+    problem = service.client.post("/studies", json={"name": "x"}).json()
+    assert problem["detail"] == "experiment_ids: missing; give a value"
+    assert problem["errors"][0]["found"] is None

@@ -63,6 +63,7 @@ class CalibrationRun:
         if found.outcome != "completed":
             after = " ".join(f"--after {one}" for one in self._calibration.ids)
             go_on = f" Go on with 'calibrate run {after}'" if after else ""
-            say(f"experiment {found.id} ({kind}): {found.outcome}: {found.reason}. Nothing was calibrated.{go_on}")
+            reason = self._session.in_full(found.reason)
+            say(f"experiment {found.id} ({kind}): {found.outcome}: {reason}. Nothing was calibrated.{go_on}")
             raise typer.Exit(signal_code or ExitCode.NOT_COMPLETED)
         return found

@@ -38,13 +38,14 @@ def clear_fault(
     """Show the fault, and clear it once that is confirmed. The power stays off."""
     from bench.control.drive_faults import clear_faults, faults_in_words, read_drives
 
-    configuration = session_of(context).configuration()
+    session = session_of(context)
+    configuration = session.configuration()
     before = read_drives(configuration)
     fault = faults_in_words(before)
     if not as_json:
         _show(before)
     if fault and not (yes or (not as_json and _is_wanted(fault))):
-        say("Nothing was cleared. Remove the cause, then: friction-bench drive clear-fault --yes")
+        say(session.in_full("Nothing was cleared. Remove the cause, then: friction-bench drive clear-fault --yes"))
         raise typer.Exit(ExitCode.NOT_COMPLETED)
     after = clear_faults(configuration, fault) if fault else before
     if as_json:

@@ -88,7 +88,7 @@ def _run(
         with session.open_store() as store:
             store.annotate(found.id, tags=words)
         found = replace(found, tags=tuple(words))
-    _report(found, as_json)
+    _report(session, found, as_json)
     if signal_code is not None:
         raise typer.Exit(signal_code)
     if found.outcome != "completed":
@@ -139,13 +139,14 @@ def _as_it_ended(found: "Experiment", status: "RunnerStatus") -> "Experiment":
     return replace(found, outcome=status.outcome, reason=status.reason)
 
 
-def _report(found: "Experiment", as_json: bool) -> None:
+def _report(session: BenchSession, found: "Experiment", as_json: bool) -> None:
     if as_json:
         from bench.service.records import experiment_record
 
         print_json(experiment_record(found).model_dump(mode="json"))
         return
-    say(f"experiment {found.id}: {found.outcome}{f': {found.reason}' if found.reason else ''}")
+    reason = f": {session.in_full(found.reason)}" if found.reason else ""
+    say(f"experiment {found.id}: {found.outcome}{reason}")
     rows = [(name, value) for name, value in found.results.items() if isinstance(value, int | float | str)]
     if rows:
         table("Results", ["what", "value#"], rows)

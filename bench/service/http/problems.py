@@ -14,12 +14,14 @@ from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse
 
 from bench.config.quantities import unit_of
+from bench.config.validation import keys_beside, models_in, unknown
 from bench.errors import BenchError
 from bench.runs.lease import LeaseHeldError
 from compensator.errors import CompensatorError
 from drivers.errors import DriveError
 
 MEDIA_TYPE = "application/problem+json"
+MISSING = "missing; give a value"
 LONGEST_FOUND = 200  # characters that are said back of what was sent
 
 
@@ -39,7 +41,9 @@ class FieldProblem(BaseModel):
     field: str = Field(description="path of the field, parts joined with '.'", examples=["parameters.load_kg"])
     message: str = Field(description="what is wanted", examples=["Input should be less than or equal to 0.1"])
     found: Any = Field(default=None, description="what was sent")
-    allowed: dict[str, Any] = Field(default={}, description="the bounds that apply", examples=[{"le": 0.1}])
+    allowed: dict[str, Any] = Field(
+        default={}, description="the bounds that apply; of an unknown key, the known ones", examples=[{"le": 0.1}]
+    )
     unit: str = Field(default="", description="SI unit of the field", examples=["kg"])
 
 
@@ -114,27 +118,39 @@ def status_of(error: Exception) -> int:
     return 503 if isinstance(error, OSError) else 409
 
 
-def field_problems(error: ValidationError | RequestValidationError, prefix: str = "") -> list[FieldProblem]:
+def field_problems(
+    error: ValidationError | RequestValidationError, prefix: str = "", model: type[BaseModel] | None = None
+) -> list[FieldProblem]:
     """pydantic's list of errors as ours.
 
     Args:
         error: as raised; of a request, the first part of each location ("body", "query") is left out.
         prefix: put before each field's path.
+        model: what was read; with it, an unknown key has the known ones beside it.
     """
     skip = 1 if isinstance(error, RequestValidationError) else 0
-    return [_field_problem(detail, prefix, detail["loc"][skip:]) for detail in error.errors()]
+    return [_field_problem(detail, prefix, detail["loc"][skip:], model) for detail in error.errors()]
 
 
-def _field_problem(error: Any, prefix: str, location: tuple[int | str, ...]) -> FieldProblem:
+def _field_problem(
+    error: Any, prefix: str, location: tuple[int | str, ...], model: type[BaseModel] | None
+) -> FieldProblem:
     name = ".".join(str(part) for part in (*([prefix] if prefix else []), *location))
-    allowed = {key: value for key, value in error.get("ctx", {}).items() if isinstance(value, int | float | str)}
+    bounds = error.get("ctx", {}).items()
+    allowed: dict[str, Any] = {key: value for key, value in bounds if isinstance(value, int | float | str)}
     found = error.get("input")
     if isinstance(found, str) and len(found) > LONGEST_FOUND:
         found = f"{found[:LONGEST_FOUND]} … ({len(found)} characters)"
     elif not isinstance(found, int | float | str | bool | None):
         found = type(found).__name__
+    message = error["msg"]
+    if error["type"] == "extra_forbidden":
+        keys = keys_beside(model, location) if model is not None else []
+        message, allowed = unknown(str(location[-1]), keys), {"keys": keys} if keys else {}
+    elif error["type"] == "missing":
+        found, message = None, MISSING
     unit = next((unit_of(part) for part in reversed(location) if isinstance(part, str)), "")
-    return FieldProblem(field=name, message=error["msg"], found=found, allowed=allowed, unit=unit)
+    return FieldProblem(field=name, message=message, found=found, allowed=allowed, unit=unit)
 
 
 class InvalidFieldsError(BenchError, ValueError):
@@ -165,10 +181,10 @@ def install(app: FastAPI) -> None:
         return problem_response(422, str(error), error.kind, error.errors)
 
     @app.exception_handler(RequestValidationError)
-    async def invalid_request(_request: Request, error: RequestValidationError) -> JSONResponse:
+    async def invalid_request(request: Request, error: RequestValidationError) -> JSONResponse:
         if (no_json := _no_json(error)) is not None:
             return problem_response(422, no_json, kind="ValidationError")
-        return _invalid(field_problems(error))
+        return _invalid(field_problems(error, model=_body_model(request)))
 
     @app.exception_handler(ValidationError)
     async def invalid_value(_request: Request, error: ValidationError) -> JSONResponse:
@@ -182,6 +198,12 @@ def install(app: FastAPI) -> None:
         return problem_response(error.status_code, str(error.detail), headers=headers)
 
 
+def _body_model(request: Request) -> type[BaseModel] | None:
+    """What the route of a request reads its body into; None where it has none."""
+    field = getattr(request.scope.get("route"), "body_field", None)
+    return None if field is None else next(models_in(field.field_info.annotation), None)
+
+
 def _no_json(error: RequestValidationError) -> str | None:
     """What is wrong with a body that is no JSON; None where it is."""
     for detail in error.errors():
@@ -191,5 +213,8 @@ def _no_json(error: RequestValidationError) -> str | None:
 
 
 def _invalid(errors: list[FieldProblem]) -> JSONResponse:
-    sentences = [f"{error.field or 'body'} is {error.found!r}: {error.message}" for error in errors]
+    sentences = [
+        f"{error.field or 'body'}{'' if error.message == MISSING else f' is {error.found!r}'}: {error.message}"
+        for error in errors
+    ]
     return problem_response(422, "; ".join(sentences), kind="ValidationError", errors=errors)

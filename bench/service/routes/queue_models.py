@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
+from bench.config.validation import problems
 from bench.experiments.registry import find_kind
 from bench.json_types import Json
 from bench.runs.queue.campaign import MOST_ITEMS
@@ -59,8 +60,8 @@ class NewExperiment(NewQueueItem):
         try:
             kind.parameters.model_validate(self.parameters)
         except ValidationError as error:
-            fields = field_problems(error, prefix="parameters")
-            words = "; ".join(f"{one.field.removeprefix('parameters.')}: {one.message}" for one in fields)
+            fields = field_problems(error, prefix="parameters", model=kind.parameters)
+            words = "; ".join(problems(error, model=kind.parameters))
             raise InvalidFieldsError(f"{self.kind}: {words}", "ParameterError", fields) from error
 
 
