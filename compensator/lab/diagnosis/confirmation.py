@@ -23,11 +23,9 @@ def is_confirmed(candidate: Candidate) -> bool:
     else. Neither flips of signs nor trials drawn again can be sure where a few stretches or trials hold most of the
     evidence, as those at the highest speed do of drag: there a very strong score stands without them, if the error
     falls at all; near reversals, where every chain leaves a little, if it falls as much as is asked for even without
-    the trial that gains most. There it has to fall beside what the measuring chain leaves, too.
+    the trial that gains most.
     """
-    beside = candidate.beside_chain
-    stands = beside is None or _helps(candidate, beside, LEAST_GAIN)
-    return is_sure(candidate) and candidate.physical and stands
+    return is_sure(candidate) and candidate.physical
 
 
 def is_sure(candidate: Candidate) -> bool:
@@ -37,13 +35,8 @@ def is_sure(candidate: Candidate) -> bool:
     before, gain = candidate.before, candidate.gain
     falls = before**2 * (1.0 - (1.0 - gain.value) ** 2) >= LEAST_EXPLAINED**2
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
-    return candidate.score > 0.0 and no_luck and falls and _helps(candidate, gain, least)
-
-
-def _helps(candidate: Candidate, gain: Gain, least: float) -> bool:
-    """Whether a gain is large enough, and no luck; trials drawn again need not be sure where the evidence is strong."""
-    strong = candidate.score >= VERY_STRONG
-    return gain.value >= least and (gain.low > 0.0 or (strong and _lasts(gain, candidate.rows, least)))
+    helps = gain.value >= least and (gain.low > 0.0 or (strong and _lasts(gain, candidate.rows, least)))
+    return candidate.score > 0.0 and no_luck and falls and helps
 
 
 def _lasts(gain: Gain, rows: EffectRows, least: float) -> bool:

@@ -43,8 +43,6 @@ class Candidate:
         physical: all its coefficients lie within their physical bounds when fitted freely.
         picture: why.
         rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
-        beside_chain: gain beside the chain's columns that it stands in for near reversals (`beside_chain`); None: it
-            stands in for none there, or was not confirmed without.
     """
 
     effect: Effect
@@ -59,7 +57,6 @@ class Candidate:
     physical: bool
     picture: Picture | None
     rows: EffectRows = "sliding"
-    beside_chain: Gain | None = None
 
 
 @dataclass(frozen=True)

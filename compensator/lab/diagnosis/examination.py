@@ -1,8 +1,6 @@
 """Examine candidates: refit with each, measure the gain on held-out rows, find its rivals."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
@@ -12,17 +10,16 @@ from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.physical import is_physical
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import catalogue, effect_named
-from compensator.lab.effects.effect import Effect, MotionRows
-from compensator.lab.model.fit import fit_sliding, with_columns, with_effect
+from compensator.lab.effects.effect import MotionRows
+from compensator.lab.model.fit import fit_sliding, with_effect
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.gain import Gain, held_out_gain, predicts_better
+from compensator.lab.model.gain import held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import determination
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence, Screening, kept_evidence, new_directions
-from compensator.lab.screening.nuisance import smoothed_signs
 
 TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
 ALIKE = 0.95  # correlation of what two effects explain
@@ -48,7 +45,6 @@ def _ties(item: Evidence, best: Evidence) -> bool:
 
 
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
-MEASURING_CHAIN = "measuring chain"
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
 SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
 NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/explanation/diagnosis.md)
@@ -67,8 +63,7 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
         alike = _alike(item, spans)
         possible = [other for other in evidence if is_physical(gathered, other)]
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, possible, alike)}
-        found = _candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0))
-        candidates.append(_beside_chain(found, fit, fits[index], gathered.show_in))
+        candidates.append(_candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0)))
     confirmed = [index for index, candidate in enumerate(candidates) if is_confirmed(candidate)]
     first = _best_predictor(confirmed, evidence, afters, given)
     # stable: by score within each kind
@@ -100,32 +95,7 @@ def _explains(kept: dict[str, float], other: Evidence) -> bool:
 def as_in_the_ladder(candidate: Candidate, fit: Fit, explained: Fit, show_in: MotionRows) -> Candidate:
     """The candidate with the held-out error of the model that it is added to: there, all shapes are found anew."""
     before, after = (_held_out(model, show_in) for model in (fit, explained))
-    found = replace(candidate, after=after.relative, gain=held_out_gain(before, after), beside_chain=None)
-    return _beside_chain(found, fit, explained, show_in)
-
-
-def _beside_chain(candidate: Candidate, fit: Fit, explained: Fit, show_in: MotionRows) -> Candidate:
-    """The candidate; where it is confirmed near reversals, with what it gains beside the chain's columns, too."""
-    if show_in == "sliding" or not is_confirmed(candidate):
-        return candidate
-    gain = gain_beside_chain(candidate.effect, fit, explained, partial(_held_out, show_in=show_in))
-    return replace(candidate, beside_chain=gain)
-
-
-def gain_beside_chain(effect: Effect, fit: Fit, explained: Fit, held_out: Callable[[Fit], HeldOut]) -> Gain | None:
-    """What an effect gains beside the columns that it stands in for; None where it stands in for none.
-
-    Args:
-        effect: that may be missing.
-        fit: the model, on rows near reversals, too.
-        explained: the model with the effect.
-        held_out: error of a model on the rows that are judged.
-    """
-    if not effect.standing_in:
-        return None
-    columns = smoothed_signs(fit.dataset, effect.standing_in)
-    before, after = (held_out(with_columns(model, MEASURING_CHAIN, columns)) for model in (fit, explained))
-    return held_out_gain(before, after)
+    return replace(candidate, after=after.relative, gain=held_out_gain(before, after))
 
 
 def _held_out(fit: Fit, show_in: MotionRows) -> HeldOut:

@@ -4,7 +4,7 @@ They stand in every diagnosis. A small delay looks like jerk; a sign smoothed by
 difference of steep sigmoids. An effect that means one of these (see `Effect.standing_in`) is judged without it.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -42,12 +42,6 @@ def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[
     if show_in == "moving":
         named["delay"] = dataset.columns(measurement_delay.EFFECT, ())[:, 0]
     return named
-
-
-def smoothed_signs(dataset: Dataset, names: Collection[str]) -> FloatArray:
-    """Those of the chain's columns (`NAMES`) that have one of some names, shape (N, k)."""
-    kept = [index for index, name in enumerate(NAMES) if name in names]
-    return dataset.stack(_columns(trial.motion, trial.signals.rate_hz)[kept] for trial in dataset.trials)
 
 
 def _known_stiffness(dataset: Dataset, shares: Sequence[tuple[float, float]]) -> dict[str, FloatArray]:

@@ -62,7 +62,6 @@ def test_in_the_ladder_a_name_is_held_against_the_rows_that_it_shows_in(monkeypa
     monkeypatch.setattr(examination, "held_out", held_out)
     monkeypatch.setattr(examination, "determination", lambda _: known)
     monkeypatch.setattr(examination, "held_out_gain", lambda *_: Gain(0.5, 0.4, 0.6))
-    monkeypatch.setattr(examination, "gain_beside_chain", lambda *_: None)
     one = Candidate(
         effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, Gain(0.3, 0.2, 0.4), True, None, rows
     )
