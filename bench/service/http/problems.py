@@ -16,6 +16,7 @@ from starlette.responses import JSONResponse
 from bench.config.quantities import unit_of
 from bench.config.validation import keys_beside, models_in, unknown
 from bench.errors import BenchError
+from bench.json_types import Values
 from bench.runs.lease import LeaseHeldError
 from compensator.errors import CompensatorError
 from drivers.errors import DriveError
@@ -137,7 +138,7 @@ def _field_problem(
 ) -> FieldProblem:
     name = ".".join(str(part) for part in (*([prefix] if prefix else []), *location))
     bounds = error.get("ctx", {}).items()
-    allowed: dict[str, Any] = {key: value for key, value in bounds if isinstance(value, int | float | str)}
+    allowed: Values = {key: value for key, value in bounds if isinstance(value, int | float | str)}
     found = error.get("input")
     if isinstance(found, str) and len(found) > LONGEST_FOUND:
         found = f"{found[:LONGEST_FOUND]} … ({len(found)} characters)"
@@ -150,7 +151,7 @@ def _field_problem(
     elif error["type"] == "missing":
         found, message = None, MISSING
     unit = next((unit_of(part) for part in reversed(location) if isinstance(part, str)), "")
-    return FieldProblem(field=name, message=message, found=found, allowed=allowed, unit=unit)
+    return FieldProblem(field=name, message=message, found=found, allowed=dict(allowed), unit=unit)
 
 
 class InvalidFieldsError(BenchError, ValueError):
