@@ -29,7 +29,7 @@ def _problem(detail: Any, prefix: str, model: type[BaseModel] | None) -> str:
     name = str(location[-1]) if location else ""
     unit = unit_of(name)
     if detail["type"] == "extra_forbidden":
-        return f"{key}: {unknown(name, keys_beside(model, detail['loc']) if model is not None else [])}"
+        return f"{key}: {unknown_key(name, keys_beside(model, detail['loc']) if model is not None else [])}"
     if detail["type"] == "missing":
         return f"{key}: missing; give a value{f' in {unit}' if unit else ''}"
     wanted = detail["msg"].removeprefix("Value error, ").removeprefix("Input ")
@@ -39,7 +39,7 @@ def _problem(detail: Any, prefix: str, model: type[BaseModel] | None) -> str:
     return f"{key}: found {_shown(detail.get('input'))}; {wanted}"
 
 
-def unknown(name: str, allowed: list[str]) -> str:
+def unknown_key(name: str, allowed: list[str]) -> str:
     """What is said of an unknown key: the allowed one that is spelled most like it, and all of them."""
     near = get_close_matches(name, allowed, 1)
     advice = f"did you mean '{near[0]}'?" if near else "remove it or correct its spelling"

@@ -1,10 +1,13 @@
 """What a message says of the bench that the global options chose."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 from bench.cli.bench_session import BenchSession
+from bench.cli.operation import run
 
 
 @pytest.mark.parametrize(
@@ -22,3 +25,9 @@ def test_a_command_about_the_drive_names_its_bench(session, said):
 def test_other_commands_stay_as_they_are():
     said = "'friction-bench drives scan' and 'friction-bench serve'"
     assert BenchSession(Path("b.toml")).in_full(said) == said
+
+
+def test_the_reason_of_a_run_names_its_bench(capsys):
+    found: Any = SimpleNamespace(id=1, outcome="failed", reason="first 'friction-bench drive clear-fault'", results={})
+    run._report(BenchSession(Path("b.toml")), found, as_json=False)
+    assert "first 'friction-bench --config b.toml drive clear-fault'" in " ".join(capsys.readouterr().out.split())

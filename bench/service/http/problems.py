@@ -14,7 +14,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse
 
 from bench.config.quantities import unit_of
-from bench.config.validation import keys_beside, models_in, unknown
+from bench.config.validation import keys_beside, models_in, unknown_key
 from bench.errors import BenchError
 from bench.json_types import Values
 from bench.runs.lease import LeaseHeldError
@@ -147,7 +147,7 @@ def _field_problem(
     message = error["msg"]
     if error["type"] == "extra_forbidden":
         keys = keys_beside(model, location) if model is not None else []
-        message, allowed = unknown(str(location[-1]), keys), {"keys": keys} if keys else {}
+        message, allowed = unknown_key(str(location[-1]), keys), {"keys": keys} if keys else {}
     elif error["type"] == "missing":
         found, message = None, MISSING
     unit = next((unit_of(part) for part in reversed(location) if isinstance(part, str)), "")
