@@ -1,6 +1,7 @@
 from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import pytest
 
@@ -37,9 +38,10 @@ def chromium(service: RunningService) -> Iterator[Any]:
         browser.close()
 
 
-def is_complaint(message: Any) -> bool:
-    """Errors of any kind, and what plotly says of the content security policy."""
-    return message.type == "error" or "CSP" in message.text
+def complaints_of(message: Any) -> list[str]:
+    """Errors of any kind, and what plotly says of the content security policy; with the path that it is about."""
+    is_complaint = message.type == "error" or "CSP" in message.text
+    return [f"{message.text} [{urlsplit(message.location.get('url', '')).path}]"] if is_complaint else []
 
 
 class Pages:
@@ -74,7 +76,7 @@ class Pages:
         if token:
             page.add_init_script(WITH_TOKEN)
         page.set_default_timeout(45_000)  # of a loaded machine; nothing here takes a second by itself
-        page.on("console", lambda message: self.complaints.append(message.text) if is_complaint(message) else None)
+        page.on("console", lambda message: self.complaints.extend(complaints_of(message)))
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.goto(f"{(service or self._service).url}/{view}")
         return page

@@ -2,9 +2,11 @@
 
 import json
 import re
+import time
 
 import pytest
 
+from bench.runs.runner import Runner
 from tests.browser.browser import imported, intercept
 from tests.service.running_service import TOKEN
 
@@ -40,7 +42,10 @@ def test_a_message_about_a_stop_stands_as_long_as_it_is_true(open_page, phase, s
     assert open_page().evaluate(call) is said
 
 
-def test_powered_off_is_not_said_of_a_joint_that_runs_again(service, open_page):
+@pytest.mark.parametrize("opening_s", [0.0, 0.6])  # a drive that opens slowly: STOP comes before the run has a number
+def test_powered_off_is_not_said_of_a_joint_that_runs_again(service, open_page, monkeypatch, opening_s):
+    begin = Runner._begin
+    monkeypatch.setattr(Runner, "_begin", lambda *args: (time.sleep(opening_s), begin(*args))[1])
     service.run("steps", repeats=1)  # the first run of a process compiles, and is slow to start and to end
     page = open_page("#bench?kind=steps&repeats=20")
     start(page)

@@ -61,12 +61,12 @@ def test_other_requests_that_hang_do_not_hold_up_a_stop(service, open_page):
 
 def test_a_failed_power_off_is_said(open_page):
     page = open_page()
-    level, text = page.evaluate(
+    level, text, experiment_id = page.evaluate(
         f"{imported('app/stop')}.then((stop) => stop.verdict("
         "{outcome: 'stopped', experiment_id: 3, power_off: 'failed', "
         "reason: 'STOP on the page; power-off failed: no answer'}))"
     )
-    assert level == "unconfirmed"
+    assert (level, experiment_id) == ("unconfirmed", 3)
     assert "NOT confirmed by the drive: STOP on the page; power-off failed: no answer" in text
 
 

@@ -17,8 +17,8 @@ export function stopButton(button, answer, state) {
     asked += 1;
     const mine = asked; // a second press begins anew; what the first one finds is of no interest any more
     const run = state.live.status?.run;
-    const experiment_id = run ? run.experiment_id ?? undefined : null; // undefined: it runs, and has no number yet
-    const tell = (phase, text) => { if (mine === asked) state.stop = { phase, text, experiment_id }; };
+    const pressed_id = run ? run.experiment_id ?? undefined : null; // undefined: it runs, and has no number yet
+    const tell = (phase, text, experiment_id = pressed_id) => { if (mine === asked) state.stop = { phase, text, experiment_id }; };
     tell("asking", "Stopping …");
     const accepted = await ask(tell, () => mine === asked);
     if (accepted) tell(...(await confirmation(accepted, tell)));
@@ -74,6 +74,7 @@ async function confirmation(accepted, tell) {
 }
 
 export function verdict(run) {
-  if (run.power_off === "failed") return ["unconfirmed", `Stop accepted, but NOT confirmed by the drive: ${run.reason}. ${EMERGENCY}`];
-  return ["confirmed", `Stop accepted and confirmed: the drive is powered off (experiment ${run.experiment_id} ${run.outcome}).`];
+  const { experiment_id, outcome, reason } = run;
+  if (run.power_off === "failed") return ["unconfirmed", `Stop accepted, but NOT confirmed by the drive: ${reason}. ${EMERGENCY}`, experiment_id];
+  return ["confirmed", `Stop accepted and confirmed: the drive is powered off (experiment ${experiment_id} ${outcome}).`, experiment_id];
 }
