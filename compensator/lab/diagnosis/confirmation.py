@@ -5,8 +5,7 @@ import math
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.catalogue import catalogue
-from compensator.lab.effects.effect import Effect, EffectRows
-from compensator.lab.model.gain import Gain
+from compensator.lab.effects.effect import Effect
 from compensator.lab.screening.evidence import VERY_STRONG
 
 SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
@@ -21,9 +20,8 @@ def is_confirmed(candidate: Candidate) -> bool:
 
     What explains nothing unless it is larger, smaller, or of the other sign than it can be, is the shadow of something
     else. Neither flips of signs nor trials drawn again can be sure where a few stretches or trials hold most of the
-    evidence, as those at the highest speed do of drag: there a very strong score stands without them, if the error
-    falls at all; near reversals, where every chain leaves a little, if it falls as much as is asked for even without
-    the trial that gains most.
+    evidence, as those at the highest speed do of drag: in steady sliding a very strong score stands without them,
+    if the error falls at all. Near reversals, where every measuring chain leaves a little, that is not enough.
     """
     return is_sure(candidate) and candidate.physical
 
@@ -35,15 +33,8 @@ def is_sure(candidate: Candidate) -> bool:
     before, gain = candidate.before, candidate.gain
     falls = before**2 * (1.0 - (1.0 - gain.value) ** 2) >= LEAST_EXPLAINED**2
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
-    helps = gain.value >= least and (gain.low > 0.0 or (strong and _lasts(gain, candidate.rows, least)))
+    helps = gain.value >= least and (gain.low > 0.0 or (strong and candidate.rows == "sliding"))
     return candidate.score > 0.0 and no_luck and falls and helps
-
-
-def _lasts(gain: Gain, rows: EffectRows, least: float) -> bool:
-    """Whether a gain that trials drawn again are not sure of is nevertheless one of more than a single trial."""
-    if rows == "moving":
-        return gain.without_best >= least
-    return rows == "sliding"
 
 
 def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:

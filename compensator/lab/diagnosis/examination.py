@@ -9,7 +9,7 @@ from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.physical import is_physical
 from compensator.lab.diagnosis.pictures import picture_of
-from compensator.lab.effects.catalogue import catalogue, effect_named
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.model.fit import fit_sliding, with_effect
 from compensator.lab.model.fitted import Fit
@@ -21,37 +21,22 @@ from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence, Screening, kept_evidence, new_directions
 
-TIE = 2.0  # of scores: barely worth a mention (Kass, Raftery 1995)
-ALIKE = 0.95  # correlation of what two effects explain
-
-
-def best_shapes(gathered: Candidates, screening: Screening) -> list[Evidence]:
-    """The best shape of every effect, best effect first; of those that tie, the one that the catalogue has first."""
-    best_of: dict[str, Evidence] = {}
-    for evidence in screening.evidence:  # the best shape first
-        best_of.setdefault(evidence.block.name, evidence)
-    ranked = sorted(best_of.values(), key=lambda item: -item.score)
-    order = list(catalogue())
-    best = next((item for item in ranked if is_physical(gathered, item)), None)
-    tied = [item for item in ranked if best is not None and _ties(item, best)]
-    plainest = min(tied, key=lambda item: order.index(item.block.name), default=None)
-    return ranked if plainest is None else [plainest, *(item for item in ranked if item is not plainest)]
-
-
-def _ties(item: Evidence, best: Evidence) -> bool:
-    """Whether two effects explain the same, and about as well: then the rows cannot choose between them."""
-    alike = abs(float(item.direction @ best.direction)) >= ALIKE
-    return alike and item.score >= best.score - TIE
-
-
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
 SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
 NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/explanation/diagnosis.md)
 
 
+def best_shapes(screening: Screening) -> list[Evidence]:
+    """The best shape of every effect, best effect first."""
+    best_of: dict[str, Evidence] = {}
+    for evidence in screening.evidence:  # the best shape first
+        best_of.setdefault(evidence.block.name, evidence)
+    return list(best_of.values())
+
+
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
-    """Candidates for the best shape of each effect: the answer, others that are confirmed, the rest; each by score."""
+    """Candidates for the best shape of each effect: those that are confirmed, then the rest; each by score."""
     before = _held_out(fit, gathered.show_in)
     sliding = None if gathered.show_in == "sliding" else fit_sliding(fit.dataset, fit.names, fit.training, fit.shapes)
     fits = [with_effect(fit, item.block.name, item.block.shape, sliding) for item in progress.each(evidence)]
@@ -64,27 +49,7 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
         possible = [other for other in evidence if is_physical(gathered, other)]
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, possible, alike)}
         candidates.append(_candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0)))
-    confirmed = [index for index, candidate in enumerate(candidates) if is_confirmed(candidate)]
-    first = _best_predictor(confirmed, evidence, afters, given)
-    # stable: by score within each kind
-    order = sorted(range(len(candidates)), key=lambda index: (index != first, index not in confirmed))
-    return [candidates[index] for index in order]
-
-
-def _best_predictor(
-    confirmed: list[int], evidence: list[Evidence], afters: list[HeldOut], given: list[dict[str, float]]
-) -> int | None:
-    """Which of the confirmed candidates, best score first, is the answer; None where none is confirmed.
-
-    Of two that explain the same, the one that predicts other trials better for sure: the score is had beside all that
-    formulas leave open, which may be most of what tells the two apart.
-    """
-    first = confirmed[0] if confirmed else None
-    for other in confirmed[1:]:
-        assert first is not None
-        if _explains(given[other], evidence[first]) and predicts_better(afters[other], afters[first]):
-            first = other
-    return first
+    return sorted(candidates, key=lambda one: not is_confirmed(one))  # stable: by score within each kind
 
 
 def _explains(kept: dict[str, float], other: Evidence) -> bool:

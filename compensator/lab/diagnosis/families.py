@@ -13,14 +13,12 @@ from compensator.lab.diagnosis.physical import is_before_scan, is_past_scan, is_
 from compensator.lab.diagnosis.remaining import what_remains, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
 from compensator.lab.diagnosis.wording import answer_in_words, bending_in_words
-from compensator.lab.effects.effect import MotionRows
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence, Screening, among_all
 
 FEWEST_SHOWN = 2
-LARGE_GAIN = 0.25  # near reversals: five times what is asked for there, since every chain leaves a little
 
 
 def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> Answer:
@@ -32,7 +30,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         named: evidence for the family's effects.
         generic: evidence for free curves; None where a formula need not be held against one.
     """
-    shapes = best_shapes(gathered, named)
+    shapes = best_shapes(named)
     if not shapes:
         return Answer("nothing", answer_in_words("nothing", 1.0, [], None), 1.0, [], None, [])
     shown = [item for item in shapes if item.score > 0.0][:EXAMINED]
@@ -101,7 +99,7 @@ class _Family:
     def _named(self, candidate: Candidate) -> Answer | None:
         """The answer that a candidate is; None where it is not sure, or does not hold."""
         fit, show_in, best = self.fit, self.gathered.show_in, self.evidence_of(candidate)
-        own_chance = _own_chance(self.named, candidate, show_in)
+        own_chance = self._chance_of(candidate)
         if own_chance > SIGNIFICANT or self._is_shadow(best) or not is_confirmed(candidate):
             return None
         explained = fit_effects(fit.dataset, [*fit.names, candidate.effect.name], fit.training)
@@ -113,6 +111,11 @@ class _Family:
         notes = what_remains(explained, self.gathered, candidate.effect.name)
         strength, remains = best.noncentrality, bool(notes)
         return Answer("missing", sentence, own_chance, examined, None, notes, strength, remains, explained, best)
+
+    def _chance_of(self, candidate: Candidate) -> float:
+        """The chance of the effect that is to be named, if any of its family is no luck."""
+        family = self.p_value
+        return among_all(self.named.chance_of(candidate.effect.name)) if family <= SIGNIFICANT else family
 
     def _is_shadow(self, best: Evidence) -> bool:
         """Whether it explains much less than another effect, which cannot be it."""
@@ -163,15 +166,3 @@ def _holds(explained: Fit, candidate: Candidate) -> bool:
     if term.effect.told(explained.dataset.facts, term.shape):
         return False
     return term.effect.holds is None or term.effect.holds(term.shape)
-
-
-def _own_chance(named: Screening, best: Candidate, show_in: MotionRows) -> float:
-    """The chance of the effect that is to be named, if any of its family is no luck.
-
-    Near reversals few stretches may hold most of the evidence, of which flips of signs can be no surer than of so many
-    signs. What takes much of the held-out error in whole trials drawn again, for sure, is no luck of a few stretches.
-    """
-    p_value = among_all(named.p_value)
-    own = among_all(named.chance_of(best.effect.name)) if p_value <= SIGNIFICANT else p_value
-    large = show_in == "moving" and best.gain.low >= LARGE_GAIN
-    return min(own, among_all(best.gain.chance)) if large else own

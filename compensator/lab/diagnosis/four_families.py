@@ -17,10 +17,10 @@ from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import predicts_better
 from compensator.lab.model.validation import held_out
+from compensator.lab.screening.between_scanned import with_shapes_between
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Screening, screen, screen_against_noise
 from compensator.lab.screening.gathering import gather, with_noise
-from compensator.lab.screening.own_load import on_own_load
 
 # stages of a diagnosis, as whoever waits for it is told of them
 CHECKS = "Checking the data"
@@ -110,7 +110,7 @@ def _memory_of(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
     if too_few is not None:
         return None, too_few
     wide = widened(fit, "moving" if dataset.rows == "sliding" else dataset.rows)
-    gathered = on_own_load(gather(wide, "moving"))
+    gathered = with_shapes_between(gather(wide, "moving"))
     screening = screen(gathered.bases, gathered.named, dataset.block_index[gathered.rows])
     return answer_of(wide, gathered, screening, None), gathered.left_out
 

@@ -18,15 +18,11 @@ class Gain:
 
     Attributes:
         value, low, high: of all independent units.
-        without_best: of all but the one that gains most; none where there is but one.
-        chance: share of resamples in which nothing is gained, itself one of them.
     """
 
     value: float
     low: float
     high: float
-    without_best: float = -np.inf
-    chance: float = 1.0
 
     def is_unlike(self, before: float, after: float) -> bool:
         """Whether it is notably not what the errors themselves have, each row counting alike."""
@@ -47,16 +43,7 @@ def held_out_gain(before: HeldOut, after: HeldOut, seed: int = 0) -> Gain:
     gains = 1.0 - ratios[1] / np.maximum(ratios[0], np.finfo(float).tiny)
     tail = 0.5 * (1.0 - CONFIDENCE)
     low, high = np.quantile(gains[1:], [tail, 1.0 - tail])
-    chance = (1 + int(np.sum(gains[1:] <= 0.0))) / (1 + RESAMPLES)
-    return Gain(float(gains[0]), float(low), float(high), _without_best(powers), chance)
-
-
-def _without_best(powers: FloatArray) -> float:
-    """The gain on all units but the one that gains most, of powers (2, units) before and after."""
-    if powers.shape[1] < 2:
-        return -np.inf
-    rest = np.delete(powers, int(np.argmax(powers[0] - powers[1])), axis=1).sum(axis=1)
-    return float(1.0 - np.sqrt(rest[1] / max(rest[0], np.finfo(float).tiny)))
+    return Gain(float(gains[0]), float(low), float(high))
 
 
 def predicts_better(one: HeldOut, other: HeldOut) -> bool:

@@ -93,7 +93,7 @@ def test_what_is_small_bends_where_no_luck_brings_it(weakly_bent, monkeypatch):
 
 def test_the_error_need_only_fall_where_the_evidence_is_very_strong(bent, weakly_bent, monkeypatch):
     """Few trials may turn back where it shows, so that no interval over trials is above zero."""
-    monkeypatch.setattr(own, "held_out_gain", lambda *_: Gain(0.05, low=-0.01, high=0.1, without_best=0.0))
+    monkeypatch.setattr(own, "held_out_gain", lambda *_: Gain(0.05, low=-0.01, high=0.1))
     assert bending(bent, with_noise(gather(bent))) is not None
     assert bending(weakly_bent, with_noise(gather(weakly_bent))) is None
 

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis import families
 from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.effects.catalogue import default_effects, effect_named
@@ -13,10 +12,10 @@ from compensator.lab.model.fit import fit_effects, fit_model, widened
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.evidence import among_all, screen, screen_against_noise
+from compensator.lab.screening.between_scanned import with_shapes_between
+from compensator.lab.screening.evidence import screen, screen_against_noise
 from compensator.lab.screening.gathering import gather, with_noise
-from compensator.lab.screening.own_load import on_own_load
-from tests.lab.diagnosis.test_diagnose import SHAKEN, bristles
+from tests.lab.diagnosis.test_diagnose import SHAKEN
 from tests.lab.far_side import ARM_KG_M2, twisting
 from tests.lab.synthetic import FACTS, Joint, plans, recordings
 
@@ -28,7 +27,7 @@ def twisted():
     drawn = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2, stiffness_n_m_rad=stiffness)
     made = recordings(Joint(extra=twisting), trials=[*plans((0.0, 0.25))[::2], *SHAKEN[::2]], seed=4)
     fit = widened(fit_model(make_dataset(made, drawn, Processing()), default_effects(drawn)), "moving")
-    gathered = on_own_load(gather(fit, "moving"))
+    gathered = with_shapes_between(gather(fit, "moving"))
     return fit, gathered, screen(gathered.bases, gathered.named, fit.dataset.block_index[gathered.rows])
 
 
@@ -88,41 +87,3 @@ def test_what_does_not_hold_leaves_its_place_to_the_next(monkeypatch, extra, can
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
     answer = answer_of(fit, gathered, screen_against_noise(gathered.bases, blocks, gathered.noise), None)
     assert (answer.verdict, answer.candidates[0].effect.name) == (verdict, first)
-
-
-@pytest.fixture(scope="module")
-def bristled():
-    """As `twisted`, of a joint whose friction bends bristles, were its evidence weaker."""
-    made = recordings(Joint(extra=bristles), seed=4)
-    fit = widened(fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS)), "moving")
-    gathered = on_own_load(gather(fit, "moving"))
-    named = screen(gathered.bases, gathered.named, fit.dataset.block_index[gathered.rows])
-    return fit, gathered, replace(named, p_value=0.004)
-
-
-@pytest.mark.parametrize(
-    ("show_in", "asked", "chance", "verdict"),
-    [
-        ("moving", None, None, "missing"),
-        ("moving", 0.9, None, "nothing"),
-        ("moving", None, 0.01, "nothing"),
-        ("sliding", None, None, "nothing"),
-    ],
-)
-def test_near_reversals_what_takes_much_of_the_error_for_sure_is_no_luck_of_few_stretches(
-    monkeypatch, bristled, show_in, asked, chance, verdict
-):
-    fit, gathered, unsure = bristled
-    assert among_all(unsure.p_value) > SIGNIFICANT
-    if asked is not None:
-        monkeypatch.setattr(families, "LARGE_GAIN", asked)
-    if chance is not None:
-        examined = families.examine
-        monkeypatch.setattr(
-            families,
-            "examine",
-            lambda *of: [replace(one, gain=replace(one.gain, chance=chance)) for one in examined(*of)],
-        )
-    answer = answer_of(fit, replace(gathered, show_in=show_in), unsure, None)
-    assert answer.verdict == verdict
-    assert (answer.p_value <= SIGNIFICANT) == (verdict == "missing")

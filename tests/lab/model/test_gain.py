@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from compensator.lab.model.gain import RESAMPLES, Gain, error_interval, held_out_gain, predicts_better
+from compensator.lab.model.gain import Gain, error_interval, held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut, relative_error, rms
 
 PER_UNIT = 30
@@ -32,30 +32,6 @@ def test_the_gain_is_the_fall_of_the_error():
     found = held_out_gain(before, after)
     assert found.value == pytest.approx(1.0 - after.relative / before.relative)
     assert found.low < found.value < found.high
-
-
-def test_what_is_gained_without_the_trial_that_gains_most_is_told():
-    noise = np.ones(12 * PER_UNIT)
-    most = np.repeat([10.0, *np.full(11, 2.0)], PER_UNIT)
-    found = held_out_gain(error_of(most * noise), error_of(np.where(most > 5.0, 1.0, 1.5) * noise))
-    assert found.value > 0.5
-    assert found.without_best == pytest.approx(0.25)
-
-
-@pytest.mark.parametrize(
-    ("after", "chance"),
-    [
-        ([0.5, 0.5, 0.5, 0.5], 0.0),
-        ([1.0, 1.0, 1.0, 1.0], 1.0),  # what gains nothing is no gain
-        ([0.9, 0.9, 0.9, 2.0], 1.0 - 0.75**4),  # the one that loses is drawn at least once
-    ],
-)
-def test_the_chance_of_a_gain_counts_the_draws_in_which_nothing_is_gained_and_the_measured_one(after, chance):
-    each = np.ones(PER_UNIT)
-    found = held_out_gain(error_of(np.tile(each, 4)), error_of(np.kron(after, each)))
-    drawn = found.chance * (1 + RESAMPLES) - 1
-    assert drawn == round(drawn)
-    assert binom.ppf(0.001, RESAMPLES, chance) <= drawn <= binom.ppf(0.999, RESAMPLES, chance)
 
 
 def test_it_is_paired_so_that_scatter_between_trials_does_not_hide_it():
