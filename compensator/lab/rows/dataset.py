@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -242,9 +243,20 @@ class Dataset:
             self.unfiltered[effect.name, shape] = made
         return made
 
-    def by_trial(self, full_rate: FloatArray) -> list[FloatArray]:
-        """Parts of an array (m,) over all trials' motions, (n,) each."""
-        return np.split(full_rate, np.cumsum([len(trial.motion.time_s) for trial in self.trials])[:-1])
+    @cached_property
+    def samples(self) -> list[slice]:
+        """Where each trial's samples are in an array (m,) over all trials' motions."""
+        ends = np.cumsum([0, *(len(trial.motion.time_s) for trial in self.trials)]).tolist()
+        return [slice(first, end) for first, end in pairwise(ends)]
+
+    def at_samples(self, by_trial: FloatArray) -> FloatArray:
+        """Numbers of the trials (trials,) at every sample of theirs, shape (m,)."""
+        return np.repeat(by_trial, [len(trial.motion.time_s) for trial in self.trials])
+
+    @cached_property
+    def tip_kg_m2(self) -> FloatArray:
+        """Inertia of each trial's tip load about the axis [kg m^2], shape (trials,)."""
+        return np.array([trial.motion.load_inertia_kg_m2 for trial in self.trials])
 
     def _portions(self, wanted: Sequence[tuple[Effect, Shape]]) -> Iterator[Sequence[tuple[Effect, Shape]]]:
         """So many at a time that one trial's columns at the full rate are filtered at once."""
@@ -281,43 +293,33 @@ class Dataset:
         return np.concatenate([rows[trial.picked] for trial, rows in zip(self.trials, full_rate, strict=True)])
 
     def with_prediction(
-        self,
-        load_effort: Sequence[FloatArray],
-        predicted: Sequence[FloatArray],
-        beyond: Sequence[tuple[float, FloatArray]],
-        inertia: Sequence[float],
-        load_inertia: Sequence[float],
+        self, load_effort: FloatArray, predicted: FloatArray, parting: FloatArray, inertias: FloatArray
     ) -> "Dataset":
-        """The same rows, with the predicted load and effort in every trial's motion (n,) each.
+        """The same rows, with the predicted load and effort in every trial's motion.
 
         Args:
-            load_effort: of each trial's motion.
-            predicted: of each trial's motion.
-            beyond: `inertia_beyond` and `parting` of each trial's motion.
-            inertia: of each trial's motion.
-            load_inertia: of each trial's motion.
+            load_effort, predicted, parting: of all trials' motions, one after the other, shape (m,).
+            inertias: `inertia_beyond`, `inertia` and `load_inertia` of each trial's motion, shape (3, trials).
         """
-        largest = max(float(np.abs(total).max(initial=0.0)) for total in predicted)
+        largest, nothing = float(np.abs(predicted).max(initial=0.0)), np.zeros(len(predicted))
         trials = tuple(
             replace(
                 trial,
                 motion=replace(
                     trial.motion,
-                    load_effort=load,
-                    inertia_beyond=part,
+                    load_effort=load_effort[own],
+                    inertia_beyond=beyond,
                     inertia=whole,
                     load_inertia=tip,
-                    parting=parting,
-                    predicted=total,
-                    effort_rate=rate_of_change(total, trial.signals.rate_hz),
+                    parting=parting[own],
+                    predicted=predicted[own],
+                    effort_rate=rate_of_change(predicted[own], trial.signals.rate_hz),
                     largest_effort=largest,
-                    bend=np.zeros(len(total)),
+                    bend=nothing[own],
                     doubt=0.0,
                 ),
             )
-            for trial, load, total, (part, parting), whole, tip in zip(
-                self.trials, load_effort, predicted, beyond, inertia, load_inertia, strict=True
-            )
+            for trial, own, (beyond, whole, tip) in zip(self.trials, self.samples, inertias.T.tolist(), strict=True)
         )
         return replace(self, trials=trials)
 
