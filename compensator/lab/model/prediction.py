@@ -136,7 +136,8 @@ def _inertias(terms: Sequence[Term], dataset: Dataset) -> tuple[FloatArray, Floa
 def whole_inertia(terms: Sequence[Term], tip_kg_m2: FloatArray) -> FloatArray:
     """Effort per acceleration of everything, rotor and all, with each load: the best guess where no drawing tells."""
     alone, of_load = _inertia(terms)
-    return alone + of_load * tip_kg_m2
+    found: FloatArray = alone + of_load * tip_kg_m2
+    return found
 
 
 def _inertia(terms: Sequence[Term]) -> FloatArray:

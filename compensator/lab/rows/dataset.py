@@ -392,29 +392,26 @@ class Dataset:
     def _filtered(self, start: int, full_rate: Sequence[FloatArray]) -> list[FloatArray]:
         """Filter and thin arrays (k, n) of some trials in a row, from the one of an index on."""
         trials = self.trials[start : start + len(full_rate)]
-        # orders that an effect does not use are rows of zeros
         used = [_used(rows) for rows in full_rate]
         filtered = low_pass_each(
-            [rows if some.all() else rows[some] for rows, some in zip(full_rate, used, strict=True)],
+            [rows[some] for rows, some in zip(full_rate, used, strict=True)],
             self.cutoff_hz,
             [trial.signals.rate_hz for trial in trials],
         )
         found = []
-        for trial, some, own in zip(trials, used, filtered, strict=True):
-            thinned = own[:, trial.picked]
-            if len(thinned) < len(some):
-                whole = np.zeros((len(some), len(trial.picked)))
-                whole[some] = thinned
-                thinned = whole
+        for trial, rows, some, own in zip(trials, full_rate, used, filtered, strict=True):
+            thinned = np.zeros((len(rows), len(trial.picked)))
+            thinned[some] = own.T[trial.picked].T
             found.append(thinned)
         return found
 
 
-def _used(columns: FloatArray) -> BoolArray:
-    """Which columns (k, n) hold anything."""
-    # most are seen at once: by the first sample, or by the middle one where the joint begins at rest
-    seen: BoolArray = (columns[:, 0] != 0.0) | (columns[:, columns.shape[1] // 2] != 0.0)
-    return seen if seen.all() else np.asarray(columns.any(axis=1))
+def _used(columns: FloatArray) -> slice | BoolArray:
+    """Which columns (k, n) hold anything: orders that an effect does not use are rows of zeros."""
+    # most are seen at once, by the middle sample
+    if np.count_nonzero(columns[:, columns.shape[1] // 2]) == len(columns):
+        return slice(None)
+    return np.asarray(columns.any(axis=1))
 
 
 def _passed_on(effect: Effect, motion: Motion, shape: Shape) -> FloatArray:
