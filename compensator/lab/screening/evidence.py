@@ -270,8 +270,8 @@ def _judge(
 def new_directions(base: Base, block: Block) -> FloatArray:
     """Orthonormal basis of what the block's columns add to the base, shape (n, rank)."""
     columns = block.columns - base.basis @ (base.basis.T @ block.columns)
-    before = np.linalg.norm(block.columns, axis=0)
-    new = np.linalg.norm(columns, axis=0) > 1e-3 * np.where(before > 0, before, np.inf)
+    before, after = (np.sqrt(np.einsum("nk,nk->k", one, one)) for one in (block.columns, columns))
+    new = after > 1e-3 * np.where(before > 0, before, np.inf)
     return orthonormal(columns[:, new])
 
 

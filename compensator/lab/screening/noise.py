@@ -51,6 +51,12 @@ class _Place:
         """Even, of a grid on which the rows' products by lag do not meet those from the other end."""
         return 2 * int(next_fast_len(int(self.grid[-1]) + 1, real=True))
 
+    @cached_property
+    def kinds(self) -> list[tuple[int, IntArray, IntArray]]:
+        """Each kind that has rows here, which of the rows these are, and where on the grid."""
+        rows = [(int(speed), np.flatnonzero(self.speed == speed)) for speed in np.unique(self.speed)]
+        return [(speed, inside, self.grid[inside]) for speed, inside in rows]
+
 
 class _Kind(NamedTuple):
     """Rows of one trial that have noise of one colour.
@@ -61,7 +67,7 @@ class _Kind(NamedTuple):
         gain: of the noise from white to its colour, by frequency, shape (length // 2 + 1, 1).
     """
 
-    inside: BoolArray
+    inside: IntArray
     grid: IntArray
     gain: FloatArray
 
@@ -147,10 +153,9 @@ class Noise:
 
     def _kinds_of(self, place: _Place) -> list[_Kind]:
         found = []
-        for speed in np.unique(place.speed):
-            inside = place.speed == speed
+        for speed, inside, grid in place.kinds:
             density = place.power[speed] * spectral_density(self.autocovariances[speed], place.length)
-            found.append(_Kind(inside, place.grid[inside], np.sqrt(density)[:, None]))
+            found.append(_Kind(inside, grid, np.sqrt(density)[:, None]))
         return found
 
     def covariance(self, directions: FloatArray) -> FloatArray:
@@ -217,9 +222,8 @@ class Noise:
         length, longest = place.length, self.autocovariances.shape[1]
         lags = min(longest, length // 2)
         products = np.zeros((SPEEDS, longest))
-        for speed in np.unique(place.speed):
-            inside = place.speed == speed
-            a, b = (np.fft.rfft(_filled(place.grid[inside], of[inside], length), axis=0) for of in (one, other))
+        for speed, inside, grid in place.kinds:
+            a, b = (np.fft.rfft(_filled(grid, of[inside], length), axis=0) for of in (one, other))
             both = np.sum(a.real * b.real + a.imag * b.imag, axis=1)
             products[speed, :lags] = 2.0 * np.fft.irfft(both, length)[:lags]
         return products
@@ -309,10 +313,9 @@ def _products(parts: Iterator[tuple[FloatArray, _Place]], longest: int) -> tuple
     products, pairs = np.zeros((SPEEDS, longest)), np.zeros((SPEEDS, longest))
     for values, place in parts:
         lags = min(longest, place.length // 2)
-        for speed in np.unique(place.speed):
-            inside = place.speed == speed
+        for speed, inside, grid in place.kinds:
             filled = np.zeros((2, place.length))
-            filled[0, place.grid[inside]], filled[1, place.grid[inside]] = values[place.rows][inside], 1.0
+            filled[0, grid], filled[1, grid] = values[place.rows][inside], 1.0
             spectra = np.abs(np.fft.rfft(filled, axis=1)) ** 2
             found = np.fft.irfft(spectra, place.length, axis=1)[:, :lags]
             products[speed, :lags] += found[0]
