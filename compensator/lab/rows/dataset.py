@@ -298,7 +298,9 @@ class Dataset:
         """The same rows, with the predicted load and effort in every trial's motion.
 
         Args:
-            load_effort, predicted, parting: of all trials' motions, one after the other, shape (m,).
+            load_effort: of all trials' motions, one after the other, shape (m,).
+            predicted: the same.
+            parting: the same.
             inertias: `inertia_beyond`, `inertia` and `load_inertia` of each trial's motion, shape (3, trials).
         """
         largest, nothing = float(np.abs(predicted).max(initial=0.0)), np.zeros(len(predicted))
