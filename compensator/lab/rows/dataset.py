@@ -221,8 +221,7 @@ class Dataset:
         made: dict[tuple[str, Shape], FloatArray] = {}
         for some in self._portions(missing):
             ends = np.cumsum([len(effect.parameters) for effect, _ in some])[:-1]
-            full_rate = (np.concatenate([_passed_on(e, t.motion, shape) for e, shape in some]) for t in self.trials)
-            blocks = np.split(self.stack(full_rate), ends, axis=1)
+            blocks = np.split(self.stack(_passed_on(some, trial.motion) for trial in self.trials), ends, axis=1)
             made.update({(effect.name, shape): block for (effect, shape), block in zip(some, blocks, strict=True)})
             cache.update({(e.name, shape): made[e.name, shape] for e, shape in some if not e.uses_prediction})
         return [
@@ -416,7 +415,10 @@ def _used(columns: FloatArray) -> slice | BoolArray:
     return np.asarray(columns.any(axis=1))
 
 
-def _passed_on(effect: Effect, motion: Motion, shape: Shape) -> FloatArray:
-    """The effect's columns (k, n), and what the model makes of them where it bends."""
-    columns = effect.columns(motion, shape)
-    return columns * (1.0 + motion.bend) if effect.builds_on != "effort" and motion.is_bent else columns
+def _passed_on(wanted: Sequence[tuple[Effect, Shape]], motion: Motion) -> FloatArray:
+    """The columns (k, n) of effects in one trial, and what the model makes of them where it bends."""
+    columns = [effect.columns(motion, shape) for effect, shape in wanted]
+    if motion.is_bent:
+        bent = [effect.builds_on != "effort" for effect, _ in wanted]
+        columns = [own * (1.0 + motion.bend) if some else own for own, some in zip(columns, bent, strict=True)]
+    return np.concatenate(columns) if len(columns) > 1 else columns[0]
