@@ -272,8 +272,7 @@ def new_directions(base: Base, block: Block) -> FloatArray:
     own = np.asfortranarray(block.columns)  # column by column, as it is gone through
     columns = np.asfortranarray(own - base.basis @ (base.basis.T @ own))
     before, after = np.linalg.norm(own, axis=0), np.linalg.norm(columns, axis=0)
-    new = after > 1e-3 * np.where(before > 0, before, np.inf)
-    return orthonormal(columns[:, new])
+    return orthonormal(columns[:, after > 1e-3 * np.where(before > 0, before, np.inf)])
 
 
 def _likelihood(base: Base, share: FloatArray, inflation: float) -> float:
