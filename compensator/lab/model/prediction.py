@@ -43,8 +43,8 @@ def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
     beyond, whole, of_load = _inertias(terms, dataset)
     load = carried + dataset.at_samples(beyond) * acceleration
     inertia = beyond if dataset.facts.arm_inertia_kg_m2 else whole
-    driven = dataset.at_samples(inertia)
-    parting = (carried + driven * acceleration) / np.where(driven == 0.0, np.inf, driven)
+    driven = carried + dataset.at_samples(inertia) * acceleration
+    parting = driven / dataset.at_samples(np.where(inertia == 0.0, np.inf, inertia))
     dataset = dataset.with_prediction(load, total, parting, np.stack([inertia, whole, of_load]))
     steep = [term for term in terms if term.effect.slope is not None and np.any(term.coefficients)]
     if not steep:
