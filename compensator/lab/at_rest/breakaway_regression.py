@@ -123,7 +123,7 @@ def _fit(rows: BreakawayRows, effects: Sequence[Effect], shapes: Mapping[str, Sh
 def lag_column(rows: BreakawayRows) -> FloatArray:
     """What the effort gains along the motion until the speed is the slow one, shape (E, 1)."""
     dataset = rows.fit.dataset
-    inertia = np.array([whole_inertia(rows.fit.terms, trial.motion) for trial in dataset.trials])[rows.trial_index]
+    inertia = whole_inertia(rows.fit.terms, dataset.tip_kg_m2)[rows.trial_index]
     gained = np.sqrt(2.0 * np.maximum(inertia, 0.0) * dataset.scales.slow * rows.rate)
     # without an inertia in the model, it is the same in all trials, and the coefficient has its unit
     return (rows.direction * (gained if np.all(inertia > 0.0) else np.sqrt(rows.rate)))[:, None]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from compensator.lab.recordings.processing import Signals
 from compensator.lab.recordings.recording import BoolArray, FloatArray
@@ -151,7 +151,8 @@ def _jump(signals: Signals, end: int, count: int, direction: float) -> tuple[flo
     ahead = np.column_stack([np.ones(len(after)), np.arange(len(after))])
     spread = 1.0 + np.einsum("ij,jk,ik->i", ahead, np.linalg.inv(columns.T @ columns), ahead)
     way = direction * (after - ahead @ coefficients)
-    jumps = way > student.isf(JUMPED / len(after), free) * np.sqrt(float(rest @ rest) / free * spread)
+    beyond = -stdtrit(free, JUMPED / len(after))  # of Student's t, without the cost of scipy.stats
+    jumps = way > beyond * np.sqrt(float(rest @ rest) / free * spread)
     if not jumps.any():
         return None
     most = float(way[jumps].max())

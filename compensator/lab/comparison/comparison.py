@@ -109,14 +109,15 @@ def repeatability_floor(fit: Fit) -> ErrorOf | None:
     Repeats share kind and every condition but `repeat` and their time, and run the same target; at equal times half
     the power of the difference of their residuals is what one trial alone scatters.
     """
-    dataset = fit.dataset
+    dataset, residual = fit.dataset, fit.residual
+    slots = [_slots(dataset, index) for index in range(len(dataset.trials))]
     differences, efforts = [], []
     for one, other in _repeats(dataset):
-        shared = _common_rows(dataset, one, other)
+        shared = _common_rows(slots[one], slots[other])
         if shared is None:
             continue
         rows_one, rows_other = shared
-        differences.append((fit.residual[rows_one] - fit.residual[rows_other]) / np.sqrt(2.0))
+        differences.append((residual[rows_one] - residual[rows_other]) / np.sqrt(2.0))
         efforts.append(dataset.effort[rows_one])
     if not differences:
         return None
@@ -142,19 +143,19 @@ def _repeats(dataset: Dataset) -> list[tuple[int, int]]:
     return [pair for members in groups.values() for pair in combinations(members, 2)]
 
 
-def _common_rows(dataset: Dataset, one: int, other: int) -> tuple[IntArray, IntArray] | None:
-    """Counted rows of two trials at the same times, as index arrays; None where there are too few."""
-    step = 1.0 / (2.0 * dataset.cutoff_hz)
-    slots = []
-    for index in (one, other):
-        rows = np.flatnonzero((dataset.trial_index == index) & dataset.counted)
-        inside = dataset.counted[dataset.trial_index == index]
-        time = dataset.time_of(dataset.trials[index])[inside]
-        slots.append((np.round(time / step).astype(np.int64), rows))
-    _, at_one, at_other = np.intersect1d(slots[0][0], slots[1][0], return_indices=True)
+def _slots(dataset: Dataset, index: int) -> tuple[IntArray, IntArray]:
+    """Times of one trial's counted rows, in steps that the filter lets apart, and where these rows are."""
+    own, step_s = dataset.trial_index == index, 1.0 / (2.0 * dataset.cutoff_hz)
+    time_s = dataset.time_of(dataset.trials[index])[dataset.counted[own]]
+    return np.round(time_s / step_s).astype(np.int64), np.flatnonzero(own & dataset.counted)
+
+
+def _common_rows(one: tuple[IntArray, IntArray], other: tuple[IntArray, IntArray]) -> tuple[IntArray, IntArray] | None:
+    """Rows of two trials (see `_slots`) at the same times, as index arrays; None where there are too few."""
+    _, at_one, at_other = np.intersect1d(one[0], other[0], return_indices=True)
     if len(at_one) < 10:
         return None
-    return slots[0][1][at_one], slots[1][1][at_other]
+    return one[1][at_one], other[1][at_other]
 
 
 def _residual_against(fit: Fit) -> list[ResidualAgainst]:

@@ -36,15 +36,12 @@ def fatal_problems(fit: Fit) -> list[str]:
 def data_problems(fit: Fit) -> list[str]:
     """Sentences, each naming the trial or channel, what was found, and what to do; those that are fatal first."""
     alien = alien_effort(fit)
-    return [
-        *fatal_problems(fit),
-        *([] if alien is None else [alien.text]),
-        *_ordered_conditions(fit),
-        *_odd_trials(fit),
-        *_few_usable(fit),
-        *_unused(fit),
-        *_same_samples(fit),
-    ]
+    return [*fatal_problems(fit), *([] if alien is None else [alien.text]), *lesser_problems(fit)]
+
+
+def lesser_problems(fit: Fit) -> list[str]:
+    """Those with which effects can be ranked: what loads and warmth do together, and trials that are odd or idle."""
+    return [*_ordered_conditions(fit), *_odd_trials(fit), *_few_usable(fit), *_unused(fit), *_same_samples(fit)]
 
 
 def _mirrored_trials(fit: Fit) -> list[str]:
@@ -125,12 +122,12 @@ def _ordered_conditions(fit: Fit) -> list[str]:
 
 
 def _odd_trials(fit: Fit) -> list[str]:
-    dataset, found = fit.dataset, []
+    dataset, residual, found = fit.dataset, fit.residual, []
     errors = {}
     for index in np.unique(dataset.trial_index[fit.training]):
         rows = fit.training & (dataset.trial_index == index)
         if int(rows.sum()) >= FEWEST_ROWS_OF_ODD:
-            errors[int(index)] = rms(fit.residual[rows])
+            errors[int(index)] = rms(residual[rows])
     if len(errors) < FEWEST_TRIALS_TO_COMPARE:
         return []
     median = float(np.median(list(errors.values())))

@@ -12,7 +12,7 @@ from compensator.lab.at_rest.rest_comparison import RestComparison, at_rest_in_w
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.alien_effort import AlienEffort, alien_effort
 from compensator.lab.diagnosis.answer import Answer
-from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems
+from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems, lesser_problems
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.diagnosis.four_families import LEFT, STAGES, judged
 from compensator.lab.diagnosis.note import Note, Value
@@ -75,7 +75,7 @@ def _diagnosed(fit: Fit) -> Diagnosis:
         classes=_classes(ranked),
         candidates=ranked,
         driver=first.driver,
-        data_problems=[one for one in data_problems(fit) if not (explained and alien and one == alien.text)],
+        data_problems=[*([] if alien is None or explained else [alien.text]), *lesser_problems(fit)],
         notes=[*notes, *_at_rest(fit), *_by_run(first.explained or fit)],
         left_out=families.left_out,
         too_short=too_short,

@@ -111,7 +111,7 @@ class Motion:
         """Length of the last rest [s] and distance travelled since it, shape (n,) each."""
         return since_rest(self.position, self.velocity, self.time_s, self.slow)
 
-    @property
+    @cached_property
     def step_s(self) -> float:
         """Time from sample to sample [s]; 0 of a single moment."""
         return float(self.time_s[1] - self.time_s[0]) if len(self.time_s) > 1 else 0.0

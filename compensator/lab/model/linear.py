@@ -60,7 +60,7 @@ class Term:
 
 def independent(columns: FloatArray) -> BoolArray:
     """Which columns of (N, k) are not combinations of those before them."""
-    return _gram_schmidt(columns)[0]
+    return _gram_schmidt(np.asfortranarray(columns))[0]  # in memory as they are gone through
 
 
 def orthonormal(columns: FloatArray) -> FloatArray:

@@ -31,9 +31,8 @@ def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
         terms: of the fitted model.
     """
     dataset = at_true_position(dataset, terms)
-    per_torque = effort_per_torque(dataset, terms)
-    motions = [trial.motion for trial in dataset.trials]
-    total, carried = np.zeros((2, sum(len(motion.time_s) for motion in motions)))
+    acceleration = np.concatenate([trial.motion.acceleration for trial in dataset.trials])
+    total, carried = np.zeros((2, len(acceleration)))
     for term in terms:
         if term.effect.builds_on == "effort":
             continue  # its column is made of the rest
@@ -41,16 +40,12 @@ def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
         total += part
         if term.effect.carried:
             carried += part
-    loads, beyond, wholes = [], [], []
-    of_loads = [_load_inertia(terms, motion, per_torque) for motion in motions]
-    for motion, own in zip(motions, dataset.by_trial(carried), strict=True):
-        known = _inertia_beyond(terms, motion, per_torque)
-        whole = whole_inertia(terms, motion)
-        inertia = known if motion.facts.arm_inertia_kg_m2 else whole
-        beyond.append((inertia, (own + inertia * motion.acceleration) / (inertia or np.inf)))
-        loads.append(own + known * motion.acceleration)
-        wholes.append(whole)
-    dataset = dataset.with_prediction(loads, dataset.by_trial(total), beyond, wholes, of_loads)
+    beyond, whole, of_load = _inertias(terms, dataset)
+    load = carried + dataset.at_samples(beyond) * acceleration
+    inertia = beyond if dataset.facts.arm_inertia_kg_m2 else whole
+    driven = carried + dataset.at_samples(inertia) * acceleration
+    parting = driven / dataset.at_samples(np.where(inertia == 0.0, np.inf, inertia))
+    dataset = dataset.with_prediction(load, total, parting, np.stack([inertia, whole, of_load]))
     steep = [term for term in terms if term.effect.slope is not None and np.any(term.coefficients)]
     if not steep:
         return dataset
@@ -122,26 +117,33 @@ def effort_per_torque(dataset: Dataset, terms: Sequence[Term]) -> float | None:
     return float(arm / max(moments)) if max(moments) > 0.0 and arm > 0.0 else None
 
 
-def _inertia_beyond(terms: Sequence[Term], motion: Motion, per_torque: float | None) -> float:
-    """Effort per acceleration of what hangs beyond the gear, as far as that is known; of a linear joint, all of it."""
-    beyond_kg_m2 = motion.load_inertia_kg_m2 + (motion.facts.arm_inertia_kg_m2 or 0.0)
-    if beyond_kg_m2 > 0.0 and per_torque is not None:
-        return per_torque * beyond_kg_m2
-    return 0.0 if motion.facts.joint == "rotary" else whole_inertia(terms, motion)
+def _inertias(terms: Sequence[Term], dataset: Dataset) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Effort per acceleration in each trial: of what hangs beyond the gear, of everything, of the tip load.
+
+    Beyond the gear is what is known to be there; of a linear joint, all of it. The tip load is by its weight where that
+    tells, else as it was fitted.
+    """
+    per_torque, tip_kg_m2 = effort_per_torque(dataset, terms), dataset.tip_kg_m2
+    whole = whole_inertia(terms, tip_kg_m2)
+    unknown = np.zeros(len(whole)) if dataset.facts.joint == "rotary" else whole
+    if per_torque is None:
+        return unknown, whole, _inertia(terms)[1] * tip_kg_m2
+    beyond_kg_m2 = tip_kg_m2 + (dataset.facts.arm_inertia_kg_m2 or 0.0)
+    beyond = np.where(beyond_kg_m2 > 0.0, per_torque * beyond_kg_m2, unknown)
+    return beyond, whole, np.minimum(per_torque * tip_kg_m2, whole)
 
 
-def _load_inertia(terms: Sequence[Term], motion: Motion, per_torque: float | None) -> float:
-    """Effort per acceleration of the tip load: by its weight where that tells, else as it was fitted."""
-    if per_torque is not None:
-        return min(per_torque * motion.load_inertia_kg_m2, whole_inertia(terms, motion))
+def whole_inertia(terms: Sequence[Term], tip_kg_m2: FloatArray) -> FloatArray:
+    """Effort per acceleration of everything, rotor and all, with each load: the best guess where no drawing tells."""
+    alone, of_load = _inertia(terms)
+    found: FloatArray = alone + of_load * tip_kg_m2
+    return found
+
+
+def _inertia(terms: Sequence[Term]) -> FloatArray:
+    """As it was fitted: without load, and for each kg m^2 of it; shape (2,)."""
     inertia = next((term for term in terms if term.effect.name == "inertia"), None)
-    return 0.0 if inertia is None else float(inertia.coefficients[1] * motion.load_inertia_kg_m2)
-
-
-def whole_inertia(terms: Sequence[Term], motion: Motion) -> float:
-    """Effort per acceleration of everything, rotor and all: the best guess where no drawing tells."""
-    inertia = next((term for term in terms if term.effect.name == "inertia"), None)
-    return 0.0 if inertia is None else float(inertia.coefficients @ (1.0, motion.load_inertia_kg_m2))
+    return np.zeros(2) if inertia is None else inertia.coefficients
 
 
 def at_true_position(dataset: Dataset, terms: Sequence[Term]) -> Dataset:

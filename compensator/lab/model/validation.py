@@ -61,14 +61,13 @@ def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray, judged: BoolArray) 
     gram, moment = columns.T @ columns, columns.T @ effort
     residual, doubt = np.zeros(len(units)), np.zeros(len(unit))
     for label in np.unique(unit):
-        own = unit == label
+        own, seen = np.flatnonzero(unit == label), np.flatnonzero(rows & (units == label))
         inside = columns[own]
         rest = solve_without((gram, moment), (inside.T @ inside, inside.T @ effort[own]), bounds)
-        seen = rows & (units == label)
         residual[seen] = fit.target[seen] - fit.columns[seen][:, kept] @ rest
         doubt[own] = _doubt(inside, gram)
-        if fit.dataset.is_bent and seen.any():
-            residual[seen] -= _beyond_tangent(fit, kept, rest, seen)
+        if fit.dataset.is_bent and len(seen):
+            residual[seen] -= _beyond_tangent(fit, kept, rest, rows & (units == label))
     return replace(_result(fit, kind, rows, residual[rows], units[rows]), doubt=doubt[rows[fit.training]])
 
 

@@ -10,7 +10,7 @@ from numba import njit
 
 from compensator.lab.recordings.recording import FloatArray
 
-WEIGHTS = np.array([4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0])  # of the differences over 2, 4, 6, 8 samples
+WEIGHTS = (4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0)  # of the differences over 2, 4, 6, 8 samples
 
 
 def rate_of_change(values: FloatArray, rate_hz: float) -> FloatArray:
@@ -20,20 +20,22 @@ def rate_of_change(values: FloatArray, rate_hz: float) -> FloatArray:
         few: FloatArray = np.gradient(values, 1.0 / rate_hz)
         return few
     derived = np.empty(len(values))
-    _differences(np.asarray(values, dtype=np.float64), WEIGHTS, rate_hz, derived)
+    _differences(np.asarray(values, dtype=np.float64), rate_hz, derived)
     return derived
 
 
 @njit(cache=True)
-def _differences(values: FloatArray, weights: FloatArray, rate_hz: float, derived: FloatArray) -> None:
-    reach, last, step_s = len(weights), len(values) - 1, 1.0 / rate_hz
+def _differences(values: FloatArray, rate_hz: float, derived: FloatArray) -> None:
+    reach, last, step_s = len(WEIGHTS), len(values) - 1, 1.0 / rate_hz
+    one, two, three, four = WEIGHTS
     derived[0] = (values[1] - values[0]) / step_s
     derived[last] = (values[last] - values[last - 1]) / step_s
     for row in range(1, reach):
         derived[row] = (values[row + 1] - values[row - 1]) / (2.0 * step_s)
         derived[last - row] = (values[last - row + 1] - values[last - row - 1]) / (2.0 * step_s)
     for row in range(reach, len(values) - reach):
-        total = 0.0
-        for distance in range(1, reach + 1):
-            total += weights[distance - 1] * (values[row + distance] - values[row - distance])
+        # written out, so that a processor does several rows at once
+        total = one * (values[row + 1] - values[row - 1]) + two * (values[row + 2] - values[row - 2])
+        total += three * (values[row + 3] - values[row - 3])
+        total += four * (values[row + 4] - values[row - 4])
         derived[row] = total * rate_hz

@@ -7,7 +7,6 @@ transmission pulls it back; either way the gear carries less than a rigid one by
 
 import numpy as np
 from numba import njit
-from scipy.signal import lfilter
 
 from compensator.lab.recordings.recording import FloatArray
 
@@ -72,8 +71,18 @@ def parting_on_a_spring(parting: FloatArray, resonance_rad_s: float, damping: fl
     warped = 2.0 / step_s * np.tan(0.5 * resonance_rad_s * step_s)
     doubled = 2.0 / step_s
     square, lost = doubled**2, 2.0 * damping * warped * doubled
-    numerator = np.array([square, -2.0 * square, square])
-    denominator = np.array([square + lost + warped**2, 2.0 * (warped**2 - square), square - lost + warped**2])
+    first = square + lost + warped**2
+    ahead, twice, once = square / first, 2.0 * (warped**2 - square) / first, (square - lost + warped**2) / first
     # at rest on its spring under the first parting: as if it had been so for ever
-    found: FloatArray = lfilter(numerator, denominator, parting - parting[:1]) if len(parting) else parting
+    return _swung(parting - parting[:1], ahead, twice, once) if len(parting) else parting
+
+
+@njit(cache=True)
+def _swung(driven: FloatArray, ahead: float, twice: float, once: float) -> FloatArray:
+    """y[i] = ahead (x[i] - 2 x[i-1] + x[i-2]) - twice y[i-1] - once y[i-2] of x (n,), from rest."""
+    found, before, earlier = np.empty(len(driven)), 0.0, 0.0
+    for step in range(len(driven)):
+        found[step] = before + ahead * driven[step]
+        before = earlier - 2.0 * ahead * driven[step] - twice * found[step]
+        earlier = ahead * driven[step] - once * found[step]
     return found

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -220,8 +221,7 @@ class Dataset:
         made: dict[tuple[str, Shape], FloatArray] = {}
         for some in self._portions(missing):
             ends = np.cumsum([len(effect.parameters) for effect, _ in some])[:-1]
-            full_rate = (np.concatenate([_passed_on(e, t.motion, shape) for e, shape in some]) for t in self.trials)
-            blocks = np.split(self.stack(full_rate), ends, axis=1)
+            blocks = np.split(self.stack(_passed_on(some, trial.motion) for trial in self.trials), ends, axis=1)
             made.update({(effect.name, shape): block for (effect, shape), block in zip(some, blocks, strict=True)})
             cache.update({(e.name, shape): made[e.name, shape] for e, shape in some if not e.uses_prediction})
         return [
@@ -242,9 +242,20 @@ class Dataset:
             self.unfiltered[effect.name, shape] = made
         return made
 
-    def by_trial(self, full_rate: FloatArray) -> list[FloatArray]:
-        """Parts of an array (m,) over all trials' motions, (n,) each."""
-        return np.split(full_rate, np.cumsum([len(trial.motion.time_s) for trial in self.trials])[:-1])
+    @cached_property
+    def samples(self) -> list[slice]:
+        """Where each trial's samples are in an array (m,) over all trials' motions."""
+        ends = np.cumsum([0, *(len(trial.motion.time_s) for trial in self.trials)]).tolist()
+        return [slice(first, end) for first, end in pairwise(ends)]
+
+    def at_samples(self, by_trial: FloatArray) -> FloatArray:
+        """Numbers of the trials (trials,) at every sample of theirs, shape (m,)."""
+        return np.repeat(by_trial, [len(trial.motion.time_s) for trial in self.trials])
+
+    @cached_property
+    def tip_kg_m2(self) -> FloatArray:
+        """Inertia of each trial's tip load about the axis [kg m^2], shape (trials,)."""
+        return np.array([trial.motion.load_inertia_kg_m2 for trial in self.trials])
 
     def _portions(self, wanted: Sequence[tuple[Effect, Shape]]) -> Iterator[Sequence[tuple[Effect, Shape]]]:
         """So many at a time that one trial's columns at the full rate are filtered at once."""
@@ -281,43 +292,35 @@ class Dataset:
         return np.concatenate([rows[trial.picked] for trial, rows in zip(self.trials, full_rate, strict=True)])
 
     def with_prediction(
-        self,
-        load_effort: Sequence[FloatArray],
-        predicted: Sequence[FloatArray],
-        beyond: Sequence[tuple[float, FloatArray]],
-        inertia: Sequence[float],
-        load_inertia: Sequence[float],
+        self, load_effort: FloatArray, predicted: FloatArray, parting: FloatArray, inertias: FloatArray
     ) -> "Dataset":
-        """The same rows, with the predicted load and effort in every trial's motion (n,) each.
+        """The same rows, with the predicted load and effort in every trial's motion.
 
         Args:
-            load_effort: of each trial's motion.
-            predicted: of each trial's motion.
-            beyond: `inertia_beyond` and `parting` of each trial's motion.
-            inertia: of each trial's motion.
-            load_inertia: of each trial's motion.
+            load_effort: of all trials' motions, one after the other, shape (m,).
+            predicted: the same.
+            parting: the same.
+            inertias: `inertia_beyond`, `inertia` and `load_inertia` of each trial's motion, shape (3, trials).
         """
-        largest = max(float(np.abs(total).max(initial=0.0)) for total in predicted)
+        largest, nothing = float(np.abs(predicted).max(initial=0.0)), np.zeros(len(predicted))
         trials = tuple(
             replace(
                 trial,
                 motion=replace(
                     trial.motion,
-                    load_effort=load,
-                    inertia_beyond=part,
+                    load_effort=load_effort[own],
+                    inertia_beyond=beyond,
                     inertia=whole,
                     load_inertia=tip,
-                    parting=parting,
-                    predicted=total,
-                    effort_rate=rate_of_change(total, trial.signals.rate_hz),
+                    parting=parting[own],
+                    predicted=predicted[own],
+                    effort_rate=rate_of_change(predicted[own], trial.signals.rate_hz),
                     largest_effort=largest,
-                    bend=np.zeros(len(total)),
+                    bend=nothing[own],
                     doubt=0.0,
                 ),
             )
-            for trial, load, total, (part, parting), whole, tip in zip(
-                self.trials, load_effort, predicted, beyond, inertia, load_inertia, strict=True
-            )
+            for trial, own, (beyond, whole, tip) in zip(self.trials, self.samples, inertias.T.tolist(), strict=True)
         )
         return replace(self, trials=trials)
 
@@ -390,32 +393,32 @@ class Dataset:
     def _filtered(self, start: int, full_rate: Sequence[FloatArray]) -> list[FloatArray]:
         """Filter and thin arrays (k, n) of some trials in a row, from the one of an index on."""
         trials = self.trials[start : start + len(full_rate)]
-        # orders that an effect does not use are rows of zeros
         used = [_used(rows) for rows in full_rate]
         filtered = low_pass_each(
-            [rows if some.all() else rows[some] for rows, some in zip(full_rate, used, strict=True)],
+            [rows[some] for rows, some in zip(full_rate, used, strict=True)],
             self.cutoff_hz,
             [trial.signals.rate_hz for trial in trials],
         )
         found = []
-        for trial, some, own in zip(trials, used, filtered, strict=True):
-            thinned = own[:, trial.picked]
-            if len(thinned) < len(some):
-                whole = np.zeros((len(some), len(trial.picked)))
-                whole[some] = thinned
-                thinned = whole
+        for trial, rows, some, own in zip(trials, full_rate, used, filtered, strict=True):
+            thinned = np.zeros((len(rows), len(trial.picked)))
+            thinned[some] = own.T[trial.picked].T
             found.append(thinned)
         return found
 
 
-def _used(columns: FloatArray) -> BoolArray:
-    """Which columns (k, n) hold anything."""
-    # most are seen at once: by the first sample, or by the middle one where the joint begins at rest
-    seen: BoolArray = (columns[:, 0] != 0.0) | (columns[:, columns.shape[1] // 2] != 0.0)
-    return seen if seen.all() else np.asarray(columns.any(axis=1))
+def _used(columns: FloatArray) -> slice | BoolArray:
+    """Which columns (k, n) hold anything: orders that an effect does not use are rows of zeros."""
+    # most are seen at once, by the middle sample
+    if np.count_nonzero(columns[:, columns.shape[1] // 2]) == len(columns):
+        return slice(None)
+    return np.asarray(columns.any(axis=1))
 
 
-def _passed_on(effect: Effect, motion: Motion, shape: Shape) -> FloatArray:
-    """The effect's columns (k, n), and what the model makes of them where it bends."""
-    columns = effect.columns(motion, shape)
-    return columns * (1.0 + motion.bend) if effect.builds_on != "effort" and motion.is_bent else columns
+def _passed_on(wanted: Sequence[tuple[Effect, Shape]], motion: Motion) -> FloatArray:
+    """The columns (k, n) of effects in one trial, and what the model makes of them where it bends."""
+    columns = [effect.columns(motion, shape) for effect, shape in wanted]
+    if motion.is_bent:
+        bent = [effect.builds_on != "effort" for effect, _ in wanted]
+        columns = [own * (1.0 + motion.bend) if some else own for own, some in zip(columns, bent, strict=True)]
+    return np.concatenate(columns) if len(columns) > 1 else columns[0]

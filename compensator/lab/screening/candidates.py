@@ -34,8 +34,9 @@ class Curves:
         self._splines, self._hysteresis, self._weighted = splines, hysteresis, weighted
 
     def evened(self, noise: Noise) -> "Curves":
-        """The same, their blocks evened."""
-        return Curves(self._splines, self._hysteresis, lambda columns: noise.evened(self._weighted(columns)))
+        """The same columns, their blocks evened."""
+        splines, hysteresis = lambda: list(self.splines.values()), lambda: self.hysteresis_columns
+        return Curves(splines, hysteresis, lambda columns: noise.evened(self._weighted(columns)))
 
     @cached_property
     def splines(self) -> dict[str, DriverBlock]:

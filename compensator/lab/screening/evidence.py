@@ -269,10 +269,10 @@ def _judge(
 
 def new_directions(base: Base, block: Block) -> FloatArray:
     """Orthonormal basis of what the block's columns add to the base, shape (n, rank)."""
-    columns = block.columns - base.basis @ (base.basis.T @ block.columns)
-    before = np.linalg.norm(block.columns, axis=0)
-    new = np.linalg.norm(columns, axis=0) > 1e-3 * np.where(before > 0, before, np.inf)
-    return orthonormal(columns[:, new])
+    own = np.asfortranarray(block.columns)  # column by column, as it is gone through
+    columns = np.asfortranarray(own - base.basis @ (base.basis.T @ own))
+    before, after = np.linalg.norm(own, axis=0), np.linalg.norm(columns, axis=0)
+    return orthonormal(columns[:, after > 1e-3 * np.where(before > 0, before, np.inf)])
 
 
 def _likelihood(base: Base, share: FloatArray, inflation: float) -> float:

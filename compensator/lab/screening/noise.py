@@ -12,15 +12,17 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import next_fast_len
 from scipy.stats import f as fisher
 
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.stops import StopToStop
+
+ComplexArray = NDArray[np.complex128]
 
 MEMORY_S = 2.0  # beyond which residuals are taken to be independent, as stretches are
 SPEEDS = 3  # kinds of rows, slow to fast, as many of each
@@ -51,19 +53,15 @@ class _Place:
         """Even, of a grid on which the rows' products by lag do not meet those from the other end."""
         return 2 * int(next_fast_len(int(self.grid[-1]) + 1, real=True))
 
+    @cached_property
+    def kinds(self) -> list[tuple[int, IntArray, IntArray]]:
+        """Each kind that has rows here, which of the rows these are, and where on the grid."""
+        rows = [(int(speed), np.flatnonzero(self.speed == speed)) for speed in np.unique(self.speed)]
+        return [(speed, inside, self.grid[inside]) for speed, inside in rows]
 
-class _Kind(NamedTuple):
-    """Rows of one trial that have noise of one colour.
-
-    Attributes:
-        inside: which of its rows, shape (n,).
-        grid: on the trial's even grid, of these rows.
-        gain: of the noise from white to its colour, by frequency, shape (length // 2 + 1, 1).
-    """
-
-    inside: BoolArray
-    grid: IntArray
-    gain: FloatArray
+    def spectra(self, values: FloatArray) -> list[ComplexArray]:
+        """Of columns (n, k), where rows are of each kind and 0 elsewhere; (length // 2 + 1, k) each."""
+        return [np.fft.rfft(_filled(grid, values[inside], self.length), axis=0) for _, inside, grid in self.kinds]
 
 
 @dataclass(frozen=True)
@@ -141,29 +139,24 @@ class Noise:
         return self.strokes.scaled(values, 1.0 / self.evening)
 
     @cached_property
-    def _kinds(self) -> list[list[_Kind]]:
+    def _gains(self) -> list[list[FloatArray]]:
         """Of each place: found once for all directions that are asked about."""
-        return [self._kinds_of(place) for place in self.places]
+        return [self._gains_of(place) for place in self.places]
 
-    def _kinds_of(self, place: _Place) -> list[_Kind]:
-        found = []
-        for speed in np.unique(place.speed):
-            inside = place.speed == speed
-            density = place.power[speed] * spectral_density(self.autocovariances[speed], place.length)
-            found.append(_Kind(inside, place.grid[inside], np.sqrt(density)[:, None]))
-        return found
+    def _gains_of(self, place: _Place) -> list[FloatArray]:
+        """Of noise from white to the colour of each kind of a place, by frequency, shape (length // 2 + 1, 1) each."""
+        speeds = [speed for speed, _, _ in place.kinds]
+        densities = [place.power[one] * spectral_density(self.autocovariances[one], place.length) for one in speeds]
+        return [np.sqrt(density)[:, None] for density in densities]
 
     def covariance(self, directions: FloatArray) -> FloatArray:
         """Of what noise puts into each of the directions (n, k) of evened rows: shape (k, k)."""
         directions = self.evened(directions)
         total = np.zeros((directions.shape[1], directions.shape[1]))
-        for place, kinds in zip(self.places, self._kinds, strict=True):
-            own, length = directions[place.rows], place.length
-            passed = np.zeros((length // 2 + 1, own.shape[1]), dtype=complex)
-            for kind in kinds:
-                passed += kind.gain * np.fft.rfft(_filled(kind.grid, own[kind.inside], length), axis=0)
+        for place, gains in zip(self.places, self._gains, strict=True):
+            passed = _passed(gains, place.spectra(directions[place.rows]))
             passed[1:-1] *= np.sqrt(2.0)  # negative frequencies, too
-            total += (passed.real.T @ passed.real + passed.imag.T @ passed.imag) / length
+            total += (passed.real.T @ passed.real + passed.imag.T @ passed.imag) / place.length
         if self.strokes is not None and self.from_stop_to_stop > 0.0:
             sums = self.strokes.sums(directions)
             total += self.from_stop_to_stop * (sums.T @ sums)
@@ -204,12 +197,10 @@ class Noise:
 
     def _spread(self, place: _Place, values: FloatArray) -> FloatArray:
         """The covariance of one trial's rows, but for what lasts a stroke, times values (n, k)."""
-        length, kinds = place.length, self._kinds_of(place)
-        found, passed = np.zeros_like(values), np.zeros((length // 2 + 1, values.shape[1]), dtype=complex)
-        for kind in kinds:
-            passed += kind.gain * np.fft.rfft(_filled(kind.grid, values[kind.inside], length), axis=0)
-        for kind in kinds:
-            found[kind.inside] = np.fft.irfft(kind.gain * passed, length, axis=0)[kind.grid]
+        found, gains = np.zeros_like(values), self._gains_of(place)
+        passed = _passed(gains, place.spectra(values))
+        for gain, (_, inside, grid) in zip(gains, place.kinds, strict=True):
+            found[inside] = np.fft.irfft(gain * passed, place.length, axis=0)[grid]
         return found
 
     def _crossed(self, place: _Place, one: FloatArray, other: FloatArray) -> FloatArray:
@@ -217,9 +208,7 @@ class Noise:
         length, longest = place.length, self.autocovariances.shape[1]
         lags = min(longest, length // 2)
         products = np.zeros((SPEEDS, longest))
-        for speed in np.unique(place.speed):
-            inside = place.speed == speed
-            a, b = (np.fft.rfft(_filled(place.grid[inside], of[inside], length), axis=0) for of in (one, other))
+        for (speed, _, _), a, b in zip(place.kinds, place.spectra(one), place.spectra(other), strict=True):
             both = np.sum(a.real * b.real + a.imag * b.imag, axis=1)
             products[speed, :lags] = 2.0 * np.fft.irfft(both, length)[:lags]
         return products
@@ -309,10 +298,9 @@ def _products(parts: Iterator[tuple[FloatArray, _Place]], longest: int) -> tuple
     products, pairs = np.zeros((SPEEDS, longest)), np.zeros((SPEEDS, longest))
     for values, place in parts:
         lags = min(longest, place.length // 2)
-        for speed in np.unique(place.speed):
-            inside = place.speed == speed
+        for speed, inside, grid in place.kinds:
             filled = np.zeros((2, place.length))
-            filled[0, place.grid[inside]], filled[1, place.grid[inside]] = values[place.rows][inside], 1.0
+            filled[0, grid], filled[1, grid] = values[place.rows][inside], 1.0
             spectra = np.abs(np.fft.rfft(filled, axis=1)) ** 2
             found = np.fft.irfft(spectra, place.length, axis=1)[:, :lags]
             products[speed, :lags] += found[0]
@@ -338,6 +326,14 @@ def _less(whole: FloatArray, part: FloatArray) -> FloatArray:
     ]
     found: FloatArray = np.fft.irfft(np.array(kept), 2 * lags, axis=1)[:, :lags]
     return found
+
+
+def _passed(gains: list[FloatArray], spectra: list[ComplexArray]) -> ComplexArray:
+    """What noise of each kind's colour makes of them, together."""
+    passed = np.zeros_like(spectra[0])
+    for gain, spectrum in zip(gains, spectra, strict=True):
+        passed += gain * spectrum
+    return passed
 
 
 def _filled(grid: IntArray, values: FloatArray, length: int) -> FloatArray:
