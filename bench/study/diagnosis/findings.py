@@ -27,6 +27,8 @@ def not_judged(effect: str, reason: str) -> Finding:
 
 
 def _code(found: Diagnosis) -> ConclusionCode:
+    if found.verdict == "missing" and found.candidates[0].gain.low <= 0.0:
+        return "likely"
     if found.verdict != "nothing":
         return found.verdict
     if found.too_short:

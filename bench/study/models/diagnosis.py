@@ -10,7 +10,7 @@ from compensator.lab.diagnosis.note import NoteCode
 
 Verdict = Literal["missing", "nothing", "unknown-effect", "data-problem"]
 ConclusionCode = Literal[
-    "missing", "nothing", "not-confirmed", "too-short", "unexplained", "unknown-effect", "data-problem"
+    "missing", "likely", "nothing", "not-confirmed", "too-short", "unexplained", "unknown-effect", "data-problem"
 ]
 FindingCode = NoteCode | Literal["data-problem", "not-judged"]
 Value = float | str | bool
@@ -30,8 +30,9 @@ class Conclusion(StudyModel):
     """The answer itself, finer than the verdict: a code for programs, its numbers, and the same in one sentence."""
 
     code: ConclusionCode = Field(
-        description="the verdict; instead of `nothing`: nothing that these trials can show; more than noise, but no "
-        "effect is confirmed; trials too short to tell; or something is left that nothing explains"
+        description="of the verdict `missing`: missing, or likely, where the gain on other trials is not sure; of the "
+        "verdict `nothing`: nothing that these trials can show; more than noise, but no effect is "
+        "confirmed; trials too short to tell; or something is left that nothing explains"
     )
     values: dict[str, Value] = Field(description="names and numbers that the sentence is made of, SI")
     text: str

@@ -1,7 +1,6 @@
 """Whether a candidate is confirmed by its evidence and its gain on held-out rows, and whether it is worth adding."""
 
 import math
-from collections.abc import Sequence
 
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
@@ -20,26 +19,22 @@ def is_confirmed(candidate: Candidate) -> bool:
     """Whether the evidence pays for its parameters, and neither it nor the gain on held-out rows is luck.
 
     What explains nothing unless it is larger, smaller, or of the other sign than it can be, is the shadow of something
-    else. Flips of signs cannot be sure where a few stretches hold most of the evidence, as those at the highest speed
-    do of drag: there a very strong score stands without them.
+    else. Neither flips of signs nor trials drawn again can be sure where a few stretches or trials hold most of the
+    evidence, as those at the highest speed do of drag: in steady sliding a very strong score stands without them,
+    if the error falls at all. Near reversals, where every measuring chain leaves a little, that is not enough.
     """
     return is_sure(candidate) and candidate.physical
 
 
 def is_sure(candidate: Candidate) -> bool:
     """Whether a candidate is confirmed but for the size and sign that it would need."""
+    strong = candidate.score >= VERY_STRONG
+    no_luck = candidate.p_value <= SIGNIFICANT or strong
     before, gain = candidate.before, candidate.gain
     falls = before**2 * (1.0 - (1.0 - gain.value) ** 2) >= LEAST_EXPLAINED**2
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
-    helps = gain.value >= least and gain.low > 0.0
-    no_luck = candidate.p_value <= SIGNIFICANT or candidate.score >= VERY_STRONG
+    helps = gain.value >= least and (gain.low > 0.0 or (strong and candidate.rows == "sliding"))
     return candidate.score > 0.0 and no_luck and falls and helps
-
-
-def likely_ones(candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Effects that can be it, by very strong evidence, the likeliest first."""
-    likely = [one for one in candidates if one.physical and one.score >= VERY_STRONG]
-    return sorted(likely, key=lambda one: -one.score)
 
 
 def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:

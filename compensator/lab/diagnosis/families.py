@@ -6,14 +6,13 @@ import numpy as np
 
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
-from compensator.lab.diagnosis.confirmation import is_confirmed, is_sure, likely_ones
+from compensator.lab.diagnosis.confirmation import is_confirmed, is_sure
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import as_in_the_ladder, best_shapes, examine, share_of
-from compensator.lab.diagnosis.note import Note, Value
 from compensator.lab.diagnosis.physical import is_before_scan, is_past_scan, is_too_small, is_within_bounds
 from compensator.lab.diagnosis.remaining import what_remains, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
-from compensator.lab.diagnosis.wording import answer_in_words, bending_in_words, likely_in_words
+from compensator.lab.diagnosis.wording import answer_in_words, bending_in_words
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import Candidates
@@ -149,20 +148,8 @@ class _Family:
         left = None if generic is None else without_a_name(fit, gathered, generic, p_value)
         stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
         sentence = left or answer_in_words("nothing", p_value, self.examined, None, stretches)
-        likely = [_likely(one) for one in likely_ones(self.examined)[:1] if one.gain.low <= 0.0]
         strength = self.best.noncentrality
-        return Answer("nothing", sentence, p_value, self.examined, None, likely, strength, remains=left is not None)
-
-
-def _likely(one: Candidate) -> Note:
-    """Of an effect that is not named, as its gain is not sure."""
-    values: dict[str, Value] = {
-        "effect": one.effect.name,
-        "gain": one.gain.value,
-        "low": one.gain.low,
-        "high": one.gain.high,
-    }
-    return Note("likely", likely_in_words(one), values)
+        return Answer("nothing", sentence, p_value, self.examined, None, [], strength, remains=left is not None)
 
 
 def _holds(explained: Fit, candidate: Candidate) -> bool:

@@ -8,7 +8,6 @@ NoteCode = Literal[
     "also-missing",
     "at-rest",
     "differs-by-run",
-    "likely",
     "structure-remains",
     "swings",
     "too-few-starts",
@@ -19,7 +18,6 @@ NoteCode = Literal[
 also-missing: another family of effects has something missing, too.
 at-rest: the joint at rest contradicts the model.
 differs-by-run: a constant differs from run to run.
-likely: an effect has very strong evidence, and may not help on other trials.
 structure-remains: with the effect named, structure over a variable remains.
 swings: with it, what is left swings at one frequency.
 too-few-starts: starts from rest are too few to name anything.

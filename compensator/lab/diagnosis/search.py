@@ -14,9 +14,9 @@ from typing import Literal
 
 from compensator.lab import progress
 from compensator.lab.chance import SIGNIFICANT
-from compensator.lab.diagnosis.confirmation import explained_part, likely_ones, slight_one
+from compensator.lab.diagnosis.confirmation import explained_part, slight_one
 from compensator.lab.diagnosis.diagnose import best_named, diagnose
-from compensator.lab.diagnosis.diagnosis import Diagnosis
+from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
@@ -24,6 +24,7 @@ from compensator.lab.model.gain import predicts_better
 from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import determination
+from compensator.lab.screening.evidence import VERY_STRONG
 
 MOST_EFFECTS = 4
 MOST_TRIED = 3  # in the place of a curve that has no name
@@ -145,7 +146,7 @@ def _past_curve(fit: Fit, most: int, unknown: Diagnosis, outset: float) -> Searc
         unknown: its diagnosis.
         outset: as `search`.
     """
-    sure = [one for one in likely_ones(unknown.candidates) if one.rows == "sliding" and one.gain.low > 0.0]
+    sure = [one for one in _likely(unknown) if one.rows == "sliding" and one.gain.low > 0.0]
     progress.enter(TRYING)
     for one in progress.each(sure[:MOST_TRIED]):
         named = replace(unknown, verdict="missing", classes=[(one.effect.name,)])
@@ -153,6 +154,12 @@ def _past_curve(fit: Fit, most: int, unknown: Diagnosis, outset: float) -> Searc
         if len(found.added) > 1 and _leaves_nothing(found.last):
             return found
     return None
+
+
+def _likely(diagnosis: Diagnosis) -> list[Candidate]:
+    """Effects that can be it, by very strong evidence, the likeliest first."""
+    likely = [one for one in diagnosis.candidates if one.physical and one.score >= VERY_STRONG]
+    return sorted(likely, key=lambda one: -one.score)
 
 
 def _leaves_nothing(diagnosis: Diagnosis) -> bool:

@@ -38,29 +38,23 @@ def answer_in_words(
             f"{best.effect.title.lower()}, {why} ({chance_in_words(p_value)}).{look}"
         )
     gain = best.gain.in_words(best.before, best.after, 0)
+    sure = "" if best.gain.low > 0.0 else ", but not for sure"
     return (
         f"{named_in_words(best, 'trials')}: adding it changes the held-out error from {best.before:.2%} to "
-        f"{best.after:.2%} ({gain}; {chance_in_words(p_value)})."
+        f"{best.after:.2%}{sure} ({gain}; {chance_in_words(p_value)})."
     )
 
 
 def named_in_words(best: Candidate, of: str) -> str:
-    """That an effect is missing, and what it may be instead.
+    """That an effect is missing, or likely, where its gain on other trials is not sure; and what it may be instead.
 
     Args:
         best: the effect.
         of: what cannot tell it from others: "trials", or "starts" from rest.
     """
+    missing = "is missing" if best.gain.low > 0.0 else "is likely missing"
     others = ", ".join(effect_named(name).title.lower() for name in best.rivals)
-    return f"{best.effect.title} is missing" + (f"; these {of} cannot tell it from {others}" if others else "")
-
-
-def likely_in_words(one: Candidate) -> str:
-    """That an effect has very strong evidence, and may not help on other trials."""
-    return (
-        f"{one.effect.title} is likely: its evidence is very strong, but it may not help on other trials "
-        f"({one.gain.in_words(one.before, one.after)}). Record more such trials before it is added."
-    )
+    return f"{best.effect.title} {missing}" + (f"; these {of} cannot tell it from {others}" if others else "")
 
 
 def problem_in_words(problem: str) -> str:

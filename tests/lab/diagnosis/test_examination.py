@@ -22,7 +22,8 @@ from compensator.lab.screening.evidence import Evidence, Screening
         (-1.0, 0.001, 0.2, 0.1, False),  # does not pay for its parameters
         (5.0, 0.02, 0.2, 0.1, False),  # may be luck
         (50.0, 0.02, 0.2, 0.1, True),  # few stretches hold the evidence, but it is very strong
-        (50.0, 0.001, 0.2, -0.01, False),  # held-out trials may not gain, however strong the evidence is
+        (5.0, 0.001, 0.2, -0.01, False),  # held-out trials may not gain
+        (50.0, 0.001, 0.2, -0.01, True),  # few trials hold the gain, but the evidence is very strong
         (50.0, 0.001, -0.01, -0.2, False),  # held-out trials lose
         (50.0, 0.001, 0.0005, 0.0001, False),  # a gain of no use
     ],
@@ -30,6 +31,13 @@ from compensator.lab.screening.evidence import Evidence, Screening
 def test_score_luck_and_gain_must_all_speak_for_it(score, p_value, gain, low, confirmed):
     gained = Gain(gain, low, 2.0 * gain)
     candidate = Candidate(effect_named("spring"), (), score, p_value, 7.0, (), 0.1, 0.08, gained, True, None)
+    assert is_confirmed(candidate) == confirmed
+
+
+@pytest.mark.parametrize(("rows", "confirmed"), [("sliding", True), ("moving", False), ("breakaway", False)])
+def test_near_reversals_and_at_starts_a_strong_score_alone_does_not_make_a_gain_sure(rows, confirmed):
+    gained = Gain(0.3, -0.01, 0.4)
+    candidate = Candidate(effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, gained, True, None, rows)
     assert is_confirmed(candidate) == confirmed
 
 

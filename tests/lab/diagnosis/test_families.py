@@ -72,34 +72,6 @@ def test_in_steady_sliding_a_name_must_hold_in_the_model_that_would_be_had(monke
 
 
 @pytest.mark.parametrize(
-    ("low", "score", "verdict", "noted"),
-    [(0.01, 50.0, "missing", []), (-0.01, 50.0, "nothing", ["likely"]), (-0.01, 9.0, "nothing", [])],
-)
-def test_what_may_not_help_on_other_trials_is_noted_and_not_named(monkeypatch, low, score, verdict, noted):
-    made = recordings(Joint(extra=lambda x: 0.02 * np.sin(3.0 * x.q)), seed=4)
-    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
-    gathered = with_noise(gather(fit))
-    assert gathered.noise is not None
-    blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
-    named = screen_against_noise(gathered.bases, blocks, gathered.noise)
-    examined = families.examine
-
-    def unsure(*of):
-        first, *rest = examined(*of)
-        return [
-            replace(first, score=score, gain=replace(first.gain, low=low)),
-            *(replace(one, score=0.0) for one in rest),
-        ]
-
-    monkeypatch.setattr(families, "examine", unsure)
-    answer = answer_of(fit, gathered, named, None)
-    assert answer.verdict == verdict
-    assert [note.code for note in answer.notes if note.code == "likely"] == noted
-    if noted:
-        assert answer.notes[0].text.startswith(f"{effect_named('cogging').title} is likely: ")
-
-
-@pytest.mark.parametrize(
     ("extra", "cannot_be", "verdict", "first"),
     [
         (lambda x: 0.02 * x.q, "spring", "missing", "cogging"),

@@ -9,11 +9,13 @@ from functools import cache
 
 import pytest
 
+from bench.study.diagnosis.findings import conclusion_of
 from compensator.lab.diagnosis import search as search_module
 from compensator.lab.diagnosis.confirmation import slight_one
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.diagnosis.search import Search, search
+from compensator.lab.diagnosis.wording import answer_in_words
 from compensator.lab.effects.catalogue import candidates, default_effects, effect_named
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
@@ -157,6 +159,17 @@ def test_what_was_dropped_is_not_named_again_before_the_model_has_something_else
     dropped = {step.effect for step in found.steps if step.change == "drop"}
     assert dropped
     assert asked_without == [set(), dropped]
+
+
+@pytest.mark.parametrize(("low", "said"), [(0.01, " is missing:"), (-0.01, " is likely missing:")])
+def test_a_gain_that_other_trials_do_not_bear_out_is_said_to_be_likely_only(low, said):
+    found = diagnosis_of("spring", seed=7)
+    best = replace(found.candidates[0], gain=Gain(0.1, low, 0.2), rivals=())
+    sentence = answer_in_words("missing", 0.001, [best], None)
+    assert said in sentence
+    assert ("but not for sure" in sentence) == (low < 0.0)
+    code = conclusion_of(replace(found, candidates=[best])).code
+    assert code == ("likely" if low < 0.0 else "missing")
 
 
 def test_a_sensor_whose_gains_differ_by_more_than_a_lost_shunt_cannot_be():
