@@ -130,7 +130,7 @@ def test_of_a_difference_counts_what_the_recording_itself_has_of_it(monkeypatch,
 
 
 def test_a_spring_stands_out_by_what_the_weight_does_not_take_of_its_torque():
-    joint = short(draw_joint(77, ("spring",), (2.0,)))
+    joint = draw_joint(77, ("spring",), (2.0,))
     floor, spring = floor_of(joint, "spring"), joint.physics_of(joint.trials[0]).spring_n_m_rad
     rows = Rows.of(record(joint, quiet=True), joint.scales)
     weight = (1.0 / floor.left[rows.stratum])[rows.moving]
