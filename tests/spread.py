@@ -1,7 +1,7 @@
 """How tests are spread over processes: those of one file stay together, as they share what is slow to start.
 
 Conformance tests share the simulated device of one bench, so there it is those of one bench. What is drawn at random
-shares a service, and takes long where much is drawn: each goes where there is room. Files whose few tests take longest
+takes long where much is drawn (`make fuzz`): there, each goes where there is room. Files whose few tests take longest
 are begun first: at the end one process would be left alone with them.
 """
 
@@ -10,6 +10,8 @@ from functools import cache
 
 from xdist.scheduler import LoadScopeScheduling
 from xdist.workermanage import WorkerController
+
+from tests.fuzz.effort import TIMES
 
 CONFORMANCE = "tests/drivers/conformance/"
 FUZZ = "tests/fuzz/"
@@ -66,7 +68,7 @@ class FileAndBench(LoadScopeScheduling):
         super()._assign_work_unit(node)
 
     def _split_scope(self, nodeid: str) -> str:
-        if nodeid.startswith(FUZZ):
+        if nodeid.startswith(FUZZ) and TIMES > 1:
             return nodeid
         path, _, name = nodeid.partition("::")
         return bench_of(name) or path if path.startswith(CONFORMANCE) else path

@@ -9,7 +9,17 @@ from bench.evaluation.paper.measurements import Plan
 from tests.paper.test_reproduction import SWEEP
 
 pytestmark = pytest.mark.timeout(300)  # seconds by itself; a shared machine may take minutes
-TINY = Plan((0.0, 0.1), steps=2, trials=1, speeds_rad_s=(3.0,), periods=1, speed_sweep=tuple(SWEEP.items()))
+TINY = Plan(
+    loads_kg=(0.0, 0.1),
+    steps=2,
+    trials=1,
+    speeds_rad_s=(3.0,),
+    periods=1,
+    speed_sweep=tuple(SWEEP.items()),
+    reaches_rad=(1.2,),
+    wall_reaches_rad=(0.83,),
+    largest_force_scale=0.5,
+)
 
 
 @pytest.fixture(autouse=True)

@@ -1,6 +1,7 @@
 """The lab's benchmark on the second plant: items, facts told, one answer."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -42,7 +43,8 @@ def test_the_lab_sees_recordings_and_a_rig_without_what_is_hidden():
         joint = draw_second(item)
         rig = rig_of(joint)
         rigs.add((rig.gear.ratio is None, rig.arm.inertia_kg_m2 is None, rig.motor.torque_constant_n_m_a is None))
-        for one in recordings_of(joint):
+        first = replace(joint, drawn=replace(joint.drawn, trials=joint.drawn.trials[:8]))  # each kind of motion once
+        for one in recordings_of(first):
             assert np.isfinite(one.channels["position_rad"]).all()
             assert set(one.conditions) <= {"load_kg", "arm_m", "session_s"}
     assert len(rigs) > 1
