@@ -41,7 +41,9 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     sliding = None if gathered.show_in == "sliding" else fit_sliding(fit.dataset, fit.names, fit.training, fit.shapes)
     fits = [with_effect(fit, item.block.name, item.block.shape, sliding) for item in progress.each(evidence)]
     afters = [_held_out(explained, gathered.show_in) for explained in fits]
-    given = [_evidence_given(gathered, item) for item in evidence]
+    asked = {item.block.name for item in evidence}
+    blocks = [block for block in gathered.named if block.name in asked]
+    given = [kept_evidence(gathered.with_block(item.block).bases, blocks, gathered.noise) for item in evidence]
     spans = _spans(gathered)
     candidates = []
     for index, (item, after) in enumerate(zip(evidence, afters, strict=True)):
@@ -72,11 +74,6 @@ def _held_out(fit: Fit, show_in: MotionRows) -> HeldOut:
 def share_of(show_in: MotionRows) -> float:
     """Of the evidence of the likeliest effect: what explains less is the shadow of something else."""
     return FORMULA_SHARE if show_in == "sliding" else SHARE_NEAR_REVERSALS
-
-
-def _evidence_given(gathered: Candidates, item: Evidence) -> dict[str, float]:
-    """Evidence that every effect keeps once this one is in the model."""
-    return kept_evidence(gathered.with_block(item.block).bases, gathered.named, gathered.noise)
 
 
 def _spans(gathered: Candidates) -> list[tuple[str, FloatArray]]:
