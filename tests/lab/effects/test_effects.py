@@ -233,6 +233,14 @@ def test_what_goes_round_with_the_motor_is_looked_for_where_the_gear_is_known(na
     assert all(1.0 not in shape for shape in EFFECTS[name].shapes(direct))
 
 
+@pytest.mark.parametrize(("span", "low"), [(1.5, []), (1.6, [2.0]), (3.2, [1.0, 2.0])])
+def test_friction_once_and_twice_a_turn_is_looked_for_where_the_travel_holds_half_a_wave_of_it(span, low):
+    found = EFFECTS["position_periodic_friction"].shapes(replace(motion(), position_span=span))
+    assert [order for (order,) in found if order < 3.0] == low
+    weights = [order for (order,) in EFFECTS["cogging"].shapes(replace(motion(), position_span=span)) if order < 3.0]
+    assert weights == []
+
+
 def test_units_are_the_studys_own():
     (viscous,) = EFFECTS["viscous"].parameters
     assert viscous.unit_in("N", "m") == "N s/m"
@@ -269,4 +277,4 @@ def test_stribeck_speeds_lie_between_the_uncertain_and_half_the_fast():
 def test_orders_of_a_linear_joint_are_cycles_over_its_travel():
     (first,), *_, (last,) = EFFECTS["position_periodic_friction"].shapes(motion("linear"))
     assert (first, last) == pytest.approx((np.pi, 30 * np.pi))
-    assert EFFECTS["position_periodic_friction"].shapes(motion())[0] == (3.0,)
+    assert EFFECTS["position_periodic_friction"].shapes(motion())[0] == (2.0,)

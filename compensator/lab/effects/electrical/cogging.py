@@ -8,8 +8,8 @@ MOTOR_ORDERS = (1, 2, 4, 6, 8, 10, 12, 14, 18, 20, 24, 28, 30, 36)  # poles, slo
 
 
 def shapes(motion: Motion) -> list[Shape]:
-    """Orders of the joint and of the motor."""
-    return orders(motion, MOTOR_ORDERS, fewest_cycles=2)
+    """Orders of the joint and of the motor; the first and second of the joint are its weight's."""
+    return orders(motion, MOTOR_ORDERS, lowest=3, fewest_cycles=2)
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
@@ -22,7 +22,8 @@ EFFECT = Effect(
     title="Cogging",
     physics=(
         "The magnets pull the rotor towards the slots of the iron, and wheels mesh unevenly: a torque that "
-        "goes round with the shaft, whatever the direction of motion."
+        "goes round with the shaft, whatever the direction of motion. Looked for: 3 to 30 waves per turn of the joint, "
+        "as one and two are its weight's, and up to 36 per turn of the motor."
     ),
     equation=r"a \cos kq + b \sin kq",
     columns=columns,

@@ -9,7 +9,7 @@ MOTOR_ORDERS = (1, 2)  # an eccentric pinion; the wave generator of a harmonic d
 
 def shapes(motion: Motion) -> list[Shape]:
     """Orders of the joint and of the motor."""
-    return orders(motion, MOTOR_ORDERS, fewest_cycles=1)
+    return orders(motion, MOTOR_ORDERS, lowest=1, fewest_cycles=1)
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
@@ -20,7 +20,10 @@ def columns(motion: Motion, shape: Shape) -> FloatArray:
 EFFECT = Effect(
     name="position_periodic_friction",
     title="Position-periodic friction",
-    physics=("Friction that rises and falls round the turn: a bent shaft, an eccentric gear, a damaged tooth."),
+    physics=(
+        "Friction that rises and falls round the turn: a bent shaft, an eccentric gear, a damaged tooth. Looked for: 1 "
+        "to 30 waves per turn of the joint, as far as the travel holds half of one, and 1 and 2 per turn of the motor."
+    ),
     equation=r"(a \cos kq + b \sin kq)\,\mathrm{sgn}(\dot q)",
     columns=columns,
     parameters=(
