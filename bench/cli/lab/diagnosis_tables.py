@@ -36,11 +36,12 @@ def diagnosis(found: "Diagnosis") -> None:
             percent(one.held_out_after),
             share_interval(one.gain, one.gain_low, one.gain_high),
             text(one.d_prime),
+            one.why_not[-1] if one.why_not else "",
         )
         for one in found.ranking
     ]
     if rows:
-        columns = ["effect", "named", "score#", "p#", "held out before#", "after#", "gain#", "d'#"]
+        columns = ["effect", "named", "score#", "p#", "held out before#", "after#", "gain#", "d'#", "why not"]
         table("Effects by evidence", columns, rows)
     if found.provisional:
         say(found.provisional.sentence)

@@ -9,7 +9,7 @@ from bench.study.material import load_model
 from bench.study.models.diagnosis import Diagnosis, EffectClass, Picture, ProvisionalTerm, Ranked
 from compensator.lab.chance import stated
 from compensator.lab.diagnosis import diagnosis
-from compensator.lab.diagnosis.confirmation import explained_part, slight_one
+from compensator.lab.diagnosis.confirmation import doubts, explained_part, slight_one
 from compensator.lab.diagnosis.unfollowed import Provisional, provisional
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit
@@ -135,6 +135,7 @@ def _ranked(dataset: Dataset, candidate: diagnosis.Candidate, named: set[str]) -
         confused_with=list(candidate.rivals),
         d_prime=candidate.detectability,
         physical=candidate.physical,
+        why_not=doubts(candidate),
         sentence=_sentence(candidate),
         picture=_picture(dataset, candidate.picture),
     )
@@ -147,10 +148,8 @@ def _sentence(candidate: diagnosis.Candidate) -> str:
         f"held-out error{of} {candidate.before:.2%} to {candidate.after:.2%} "
         f"({gain.in_words(candidate.before, candidate.after)})"
     ]
-    if candidate.score <= 0.0:
-        parts.append("its evidence does not pay for its parameters")
-    if not candidate.physical:
-        parts.append("the sign or size found is not physical for this effect")
+    if why_not := doubts(candidate):
+        parts.append(f"not named: {', '.join(why_not)}")
     if candidate.rivals:
         parts.append(f"not told apart from {', '.join(candidate.rivals)}")
     return "; ".join(parts) + "."

@@ -76,6 +76,10 @@ class Ranked(StudyModel):
     confused_with: list[str]
     d_prime: Number = Field(description="how well it stands apart from its best rival; from 6 on the name is sure")
     physical: bool = Field(description="False where the fitted sign or size is physically impossible")
+    why_not: list[str] = Field(
+        description="what it lacks to be named; empty where it lacks nothing, but another one may come before it",
+        examples=[["may be luck", "gain not sure"]],
+    )
     sentence: str
     picture: Picture | None
 

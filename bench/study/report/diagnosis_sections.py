@@ -37,10 +37,22 @@ def diagnosis_section(title: str, found: Diagnosis, compared: Comparison) -> Sec
             gain_cell(one.gain, one.gain_low, one.gain_high),
             number(one.d_prime),
             ", ".join(one.confused_with).replace("_", " ") or "-",
+            ", ".join(one.why_not) or "-",
         )
         for one in found.ranking
     ]
-    columns = ["effect", "named", "score#", "p#", "held out before#", "then#", "gain, 90 % interval", "d'#", "rivals"]
+    columns = [
+        "effect",
+        "named",
+        "score#",
+        "p#",
+        "held out before#",
+        "then#",
+        "gain, 90 % interval",
+        "d'#",
+        "rivals",
+        "why not",
+    ]
     shown: list[Ranked | ProvisionalTerm] = [found.provisional] if found.provisional else []
     shown += found.ranking[:PICTURES]
     figures = [figure for one in shown if (figure := picture(one, compared.effort.unit))]

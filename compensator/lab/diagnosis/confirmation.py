@@ -1,6 +1,7 @@
 """Whether a candidate is confirmed by its evidence and its gain on held-out rows, and whether it is worth adding."""
 
 import math
+from dataclasses import replace
 
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
@@ -23,18 +24,29 @@ def is_confirmed(candidate: Candidate) -> bool:
     evidence, as those at the highest speed do of drag: in steady sliding a very strong score stands without them,
     if the error falls at all. Near reversals, where every measuring chain leaves a little, that is not enough.
     """
-    return is_sure(candidate) and candidate.physical
+    return not doubts(candidate)
 
 
 def is_sure(candidate: Candidate) -> bool:
     """Whether a candidate is confirmed but for the size and sign that it would need."""
+    return not doubts(replace(candidate, physical=True))
+
+
+def doubts(candidate: Candidate) -> list[str]:
+    """Why a candidate is not confirmed, in words; none where it is."""
     strong = candidate.score >= VERY_STRONG
-    no_luck = candidate.p_value <= SIGNIFICANT or strong
     before, gain = candidate.before, candidate.gain
-    falls = before**2 * (1.0 - (1.0 - gain.value) ** 2) >= LEAST_EXPLAINED**2
+    explained = before**2 * (1.0 - (1.0 - gain.value) ** 2)
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
-    helps = gain.value >= least and (gain.low > 0.0 or (strong and candidate.rows == "sliding"))
-    return candidate.score > 0.0 and no_luck and falls and helps
+    asked = {
+        "evidence below its price": candidate.score > 0.0,
+        "may be luck": candidate.p_value <= SIGNIFICANT or strong,
+        f"explains under {LEAST_EXPLAINED:.2%} of the effort": explained >= LEAST_EXPLAINED**2,
+        f"gain under {least:.1%}": gain.value >= least,
+        "gain not sure": gain.low > 0.0 or (strong and candidate.rows == "sliding"),
+        "impossible size, sign or shape": candidate.physical,
+    }
+    return [doubt for doubt, holds in asked.items() if not holds]
 
 
 def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:

@@ -104,7 +104,8 @@ def _data_problem(fit: Fit, problem: str) -> Diagnosis:
 
 def _also_missing(answer: Answer) -> Note:
     """Of another family than the one that has the answer."""
-    return Note("also-missing", answer.sentence, {"effect": answer.candidates[0].effect.name})
+    text = f"{answer.sentence} It may be the shadow of the first finding: add that, and diagnose again."
+    return Note("also-missing", text, {"effect": answer.candidates[0].effect.name})
 
 
 def _at_rest(fit: Fit) -> list[Note]:

@@ -1,5 +1,6 @@
 """When a candidate counts as confirmed."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import examination
-from compensator.lab.diagnosis.confirmation import is_confirmed
+from compensator.lab.diagnosis.confirmation import doubts, is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.gain import Gain
@@ -39,6 +40,26 @@ def test_near_reversals_and_at_starts_a_strong_score_alone_does_not_make_a_gain_
     gained = Gain(0.3, -0.01, 0.4)
     candidate = Candidate(effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, gained, True, None, rows)
     assert is_confirmed(candidate) == confirmed
+
+
+@pytest.mark.parametrize(
+    ("changed", "doubt"),
+    [
+        ({}, []),
+        ({"score": -1.0}, ["evidence below its price"]),
+        ({"p_value": 0.02}, ["may be luck"]),
+        ({"before": 0.0006}, ["explains under 0.05% of the effort"]),
+        ({"gain": Gain(0.004, 0.001, 0.01)}, ["gain under 0.5%"]),
+        ({"gain": Gain(0.2, -0.01, 0.4)}, ["gain not sure"]),
+        ({"physical": False, "p_value": 0.02}, ["may be luck", "impossible size, sign or shape"]),
+    ],
+)
+def test_what_a_candidate_lacks_is_told(changed, doubt):
+    gained = Gain(0.2, 0.1, 0.4)
+    one = Candidate(effect_named("spring"), (), 5.0, 0.001, 7.0, (), 0.1, 0.08, gained, True, None)
+    found = replace(one, **changed)
+    assert doubts(found) == doubt
+    assert is_confirmed(found) == (not doubt)
 
 
 @pytest.mark.parametrize(("rows", "weighted"), [("sliding", True), ("moving", False)])
