@@ -1,8 +1,9 @@
 """What differs from run to run: part of the error that no model with one friction and one zero for all runs can know.
 
-Every trial's own dry friction and offset are fitted to what the model leaves of the trial, of which it has not seen a
-row. What they scatter more than their standard errors do (a variance component, by moments) differs from run to run.
-Unlike the floor from repeated trials it needs none; but what is missing in the model may make it, too.
+Every trial's own dry friction and offset, and its weight where nobody told what hangs at the arm, are fitted to what
+the model leaves of the trial, of which it has not seen a row. What they scatter more than their standard errors do (a
+variance component, by moments) differs from run to run. Unlike the floor from repeated trials it needs none; but what
+is missing in the model may make it, too.
 """
 
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from scipy.stats import chi2
 
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import HeldOut, relative_error
-from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.screening.evidence import inflation_of
 
 FEWEST_ROWS = 20  # of a trial
@@ -20,6 +21,9 @@ CHANCE = 0.01  # of so much scatter where it is one and the same
 LEAST_SHARE = 0.01  # of Coulomb friction
 
 DRY_FRICTION, CONSTANT = "Dry friction", "A constant force, or the zero of the effort,"
+WEIGHT = "The weight that the joint carries"
+ONE_FOR_ALL = {DRY_FRICTION: "friction", CONSTANT: "zero", WEIGHT: "weight"}
+ASK_LOADS = " Were other loads hung? Tell load_kg of each trial."
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +31,7 @@ class ByRun:
     """How a constant differs between the trials that a model was not fitted to and those that it was.
 
     Attributes:
-        what: DRY_FRICTION or CONSTANT.
+        what: DRY_FRICTION, CONSTANT or WEIGHT.
         scatter: root mean square over the trials, less what their standard errors make of it, in the effort's unit.
         share: of the model's Coulomb friction.
         trial: the one that differs most; difference: of its constant, in the effort's unit.
@@ -54,15 +58,16 @@ def differences_by_run(fit: Fit, judged: HeldOut) -> list[ByRun]:
         return []
     dataset = fit.dataset
     direction = dataset.stack([trial.motion.direction[None] for trial in dataset.trials])[judged.rows, 0]
+    columns = {DRY_FRICTION: direction, CONSTANT: np.ones(len(direction)), **_untold_weight(fit, judged.rows)}
+    together = np.column_stack(list(columns.values()))
     index = dataset.trial_index[judged.rows]
     found = {
-        int(label): _differences(direction[index == label], judged.residual[index == label])
+        int(label): _differences(together[index == label], judged.residual[index == label])
         for label in np.unique(index)
         if int((index == label).sum()) >= FEWEST_ROWS and np.ptp(direction[index == label]) > 1.0
     }
     if not found:
         return []
-    columns = {DRY_FRICTION: direction, CONSTANT: np.ones(len(direction))}
     told = [
         _by_run(what, [own[place] for own in found.values()], list(found), coulomb, fit, judged, column)
         for place, (what, column) in enumerate(columns.items())
@@ -74,11 +79,11 @@ def by_run_in_words(found: ByRun, unit: str) -> str:
     """One sentence."""
     where = f"in '{found.trial}'" if found.trials == 1 else f"over {found.trials} trials, most in '{found.trial}'"
     of_friction = f", {found.share:.1%} of Coulomb friction" if found.what == DRY_FRICTION else ""
-    one = "friction" if found.what == DRY_FRICTION else "zero"
+    one, ask = ONE_FOR_ALL[found.what], ASK_LOADS if found.what == WEIGHT else ""
     return (
         f"{found.what} differs from run to run by {found.scatter:.3g} {unit}{of_friction}, {where} "
         f"({found.difference:+.3g} {unit}): {found.floor:.1%} of the effort, a floor for any model with one {one} for "
-        "all runs, unless what is missing makes it."
+        f"all runs, unless what is missing makes it.{ask}"
     )
 
 
@@ -115,13 +120,26 @@ def _by_run(
     )
 
 
-def _differences(direction: FloatArray, residual: FloatArray) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Dry friction and offset of a trial's own, fitted beside each other, each with its standard error."""
-    columns = np.column_stack([direction, np.ones(len(direction))])
+def _untold_weight(fit: Fit, rows: BoolArray) -> dict[str, FloatArray]:
+    """Column of the weight, 1 where it pulls most; none where loads are told, or the model has no gravity."""
+    told = any("load_kg" in trial.motion.conditions for trial in fit.dataset.trials)
+    gravity = next((term for term in fit.terms if term.effect.name == "gravity"), None)
+    if told or gravity is None:
+        return {}
+    column = fit.dataset.columns(gravity.effect, gravity.shape)[rows, 0]
+    most = float(np.abs(column).max(initial=0.0))
+    return {WEIGHT: column / most} if most > 0.0 else {}
+
+
+def _differences(columns: FloatArray, residual: FloatArray) -> list[tuple[float, float]]:
+    """A trial's own constants, fitted beside each other, each with its standard error.
+
+    Args:
+        columns: shape (n, constants); what a trial's motion cannot tell apart has a wide error.
+        residual: shape (n,).
+    """
     solution = np.linalg.lstsq(columns, residual, rcond=None)[0]
     left = residual - columns @ solution
-    noise = inflation_of(left) * float(left @ left) / (len(left) - 2)
-    errors = np.sqrt(noise * np.diag(np.linalg.inv(columns.T @ columns)))
-    least = np.finfo(float).tiny
-    friction, offset = zip(solution.tolist(), np.maximum(errors, least).tolist(), strict=True)
-    return friction, offset
+    noise = inflation_of(left) * float(left @ left) / (len(left) - columns.shape[1])
+    errors = np.sqrt(noise * np.diag(np.linalg.pinv(columns.T @ columns, hermitian=True)))
+    return list(zip(solution.tolist(), np.maximum(errors, np.finfo(float).tiny).tolist(), strict=True))

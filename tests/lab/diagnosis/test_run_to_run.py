@@ -1,13 +1,21 @@
 """Dry friction or a zero that differs from run to run is told with its size, and nothing where neither does."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import run_to_run
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.diagnosis.run_to_run import CONSTANT, DRY_FRICTION, ByRun, by_run_in_words, differences_by_run
+from compensator.lab.diagnosis.run_to_run import (
+    CONSTANT,
+    DRY_FRICTION,
+    WEIGHT,
+    ByRun,
+    by_run_in_words,
+    differences_by_run,
+)
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
@@ -62,6 +70,21 @@ def test_one_run_with_another_zero():
     assert re.search(rf"^A constant force, or the zero of the effort, differs .* in '{name}' \(-0.0", words)
     assert words.endswith("a floor for any model with one zero for all runs, unless what is missing makes it.")
     assert words in map(str, diagnose(fit).notes)
+
+
+@pytest.mark.parametrize("told", [True, False])
+def test_loads_that_nobody_told_are_asked_for(told):
+    made = recordings(trials=plans((0.0, 0.2), temperatures_c=(25.0,)), seed=11)
+    if not told:
+        made = [replace(one, conditions={k: v for k, v in one.conditions.items() if k != "load_kg"}) for one in made]
+    fit = fit_model(make_dataset(made, FACTS, Processing(8.0)), default_effects(FACTS))
+    found = [one for one in differences_by_run(fit, held_out(fit)) if one.what == WEIGHT]
+    assert bool(found) != told
+    if not told:
+        # half of the trials carry 0.2 kg more than the others, and all are held against the mean of the others
+        moment_n_m = 0.2 * 9.81 * FACTS.arm_m
+        assert found[0].scatter == pytest.approx(0.5 * moment_n_m, rel=0.25)
+        assert by_run_in_words(found[0], "N m").endswith("Were other loads hung? Tell load_kg of each trial.")
 
 
 def test_first_what_makes_more_of_the_error():
