@@ -108,6 +108,24 @@ def test_how_many_effects_were_not_judged_is_said_beside_the_report(command, tmp
     assert f"{count} effects were not judged: see the report." in result.stdout.replace("\n", " ")
 
 
+def test_loads_that_nobody_told_are_asked_for(command, tmp_path):
+    random, files = np.random.default_rng(4), []
+    time_s = np.arange(0.0, 12.0, 0.005)
+    for number, moment_n_m in enumerate((0.3, 0.3, 0.5, 0.5)):
+        position = (1.2 + 0.1 * number) * np.sin(2.0 * np.pi * (0.2 + 0.03 * number) * time_s)
+        speed = np.gradient(position, time_s)
+        torque = 0.01 * np.gradient(speed, time_s) + moment_n_m * np.sin(position) + 0.05 * np.tanh(speed / 0.02)
+        torque += 2e-3 * random.standard_normal(len(time_s))
+        files.append(tmp_path / f"swing{number}.csv")
+        rows = np.column_stack([time_s, position, torque])
+        np.savetxt(files[-1], rows, "%.7f", ",", header="time_s,position_rad,torque_n_m", comments="")
+    result = command("explain", *files, "--name", "arm", "--html", "arm.html")
+    assert result.exit_code == 0, result.output
+    said = " ".join(result.stdout.split())
+    assert "The weight that the joint carries differs from run to run" in said
+    assert "Were other loads hung? Tell load_kg of each trial." in said
+
+
 def test_a_joint_that_never_slid_is_reported_and_not_refused(command, tmp_path):
     time_s = [0.01 * index for index in range(1200)]
     rows = [f"{t:.2f},{0.3 + 0.002 * sin(t):.7f},{0.3 * sin(t):.6f}" for t in time_s]

@@ -33,6 +33,7 @@ from bench.study.report.model_sections import (
     worst_trial,
 )
 from bench.study.report.wording import in_words
+from compensator.lab.diagnosis.run_to_run import WEIGHT
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import NeverSlidesError
 
@@ -117,7 +118,8 @@ def explain(
     rungs = ladder(store, study_id)
     study = describe(store, study_id)
     pictures = [ladder_figure(rungs), measured_figure(before, now)]
-    left = last.advice if last.slight else last.sentence
+    loads = [one.text for one in last.findings if one.values.get("what") == WEIGHT]  # what it says rests on them
+    left = " ".join([last.advice if last.slight else last.sentence, *loads])
     head = head_section(study, rungs, left, store, pictures, confused)
     sections = [
         measured_section(study, store),
