@@ -63,8 +63,8 @@ def test_every_effect_that_is_not_in_the_model_is_a_candidate_in_all_its_shapes(
     memory = gather(gathered.fit, "moving")
     assert {block.name for block in memory.named} == {n for n, e in catalogue().items() if e.rows == "moving"}
     orders = [block.key for block in gathered.named if block.name == "position_periodic_friction"]
-    assert orders == [(float(order),) for order in range(3, 31)]
-    assert {block.scanned for block in gathered.named if block.name == "position_periodic_friction"} == {28}
+    assert orders == [(float(order),) for order in range(2, 31)]
+    assert {block.scanned for block in gathered.named if block.name == "position_periodic_friction"} == {29}
 
 
 def test_only_sliding_training_rows_are_tested(gathered):
