@@ -150,3 +150,25 @@ def test_units_are_switched_for_the_whole_page(open_page):
     assert page.get_by_label("load [kg]").input_value() == "0.1"
     page.get_by_title("Units: degrees and grams, or SI").click()
     assert page.get_by_label("angle [°]").input_value() == "90"
+
+
+def test_a_wrong_token_is_refused_in_the_words_of_the_service(open_page):
+    page = open_page(token=False)
+    page.get_by_label("Token: to start").fill("wrong")
+    page.get_by_role("button", name="Use token").click()
+    said = page.get_by_label("Token", exact=True).locator(".problem")
+    said.get_by_text("the token is none of this service, was revoked or has expired").wait_for()
+    assert "make one with: friction-bench token new" in said.inner_text()
+    page.get_by_label("Token: to start").fill(TOKEN)
+    page.get_by_role("button", name="Use token").click()
+    page.get_by_label("Token: to start").wait_for(state="detached")
+    open_page.complaints[:] = [text for text in open_page.complaints if "401" not in text]
+
+
+def test_stop_with_a_refused_token_does_not_say_that_there_is_none(open_page):
+    page = open_page()
+    page.locator(".badge.idle").wait_for()
+    page.evaluate("sessionStorage.setItem('friction-bench-token', 'revoked-in-the-meantime')")
+    page.keyboard.press("Escape")
+    page.locator("#stop-answer").get_by_text("Not stopped: the service refused the token of this page.").wait_for()
+    open_page.complaints[:] = [text for text in open_page.complaints if "401" not in text]
