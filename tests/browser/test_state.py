@@ -15,6 +15,8 @@ RUNNING = {"state": "running", "run": {"experiment_id": 2, "power_off": None}}
 STOPPED = {"state": "idle", "run": {"experiment_id": 1, "power_off": "confirmed"}}
 POWERED = {"state": "idle", "run": {"experiment_id": 1, "power_off": "failed"}}
 
+LAST_CYCLE = r"^The drive is off\. These are the readings of the last cycle before that, {}; since then nothing is measured\."
+
 
 def start(page) -> None:
     page.get_by_role("button", name="Start", exact=True).click()
@@ -79,10 +81,17 @@ def test_old_readings_are_dimmed_and_say_how_old_they_are(service, open_page):
     readings.get_by_text("position").wait_for()
     page.keyboard.press("Escape")
     page.locator(".readings.dimmed").get_by_text("position").wait_for()
-    page.get_by_text(re.compile(r"Last reading, \d+ s ago\. The drive is off\.")).wait_for()
+    page.get_by_text(re.compile(LAST_CYCLE.format(r"\d+ s ago"))).wait_for()
+    for name in ("last speed", "last current from duty", "last duty"):
+        page.locator(".readings.dimmed dt").get_by_text(name, exact=True).wait_for()
     assert service.client.get("/bench").json()["reading"]["power"] == "disabled"
     late = open_page()
-    late.get_by_text(re.compile(r"Last reading, .* ago\. The drive is off\.")).wait_for()
+    late.get_by_text(re.compile(LAST_CYCLE.format(".* ago"))).wait_for()
+    late.locator(".readings dt").get_by_text("last speed", exact=True).wait_for()
+    start(late)
+    late.locator(".readings:not(.dimmed) dt").get_by_text("speed", exact=True).wait_for()
+    late.keyboard.press("Escape")
+    late.locator(".badge.idle").wait_for()
 
 
 def test_stop_without_a_token_says_what_to_do_in_plain_words(service, open_page):
@@ -172,3 +181,36 @@ def test_stop_with_a_refused_token_does_not_say_that_there_is_none(open_page):
     page.keyboard.press("Escape")
     page.locator("#stop-answer").get_by_text("Not stopped: the service refused the token of this page.").wait_for()
     open_page.complaints[:] = [text for text in open_page.complaints if "401" not in text]
+
+
+@pytest.mark.parametrize(
+    ("reading", "off", "named"),
+    [
+        ({"current_a": -1.39, "current_measured": False, "current_estimate_a": -1.39}, False, "current from duty"),
+        ({"current_a": -1.39, "current_measured": True, "current_estimate_a": -1.2}, False, "current"),
+        ({"current_a": -1.39, "current_measured": False, "current_estimate_a": -1.39}, True, "last current from duty"),
+        ({"current_a": -1.39}, False, "current"),  # of a service that does not tell yet
+    ],
+)
+def test_a_current_is_called_what_it_is(open_page, reading, off, named):
+    call = f"(m) => m.readingsOf({json.dumps(reading)}, null, {json.dumps(off)}).map((one) => one.innerText)"
+    (shown,) = open_page().evaluate(f"{imported('bench/liveplot')}.then({call})")
+    assert shown == f"{named}−1.390 A"
+
+
+@pytest.mark.parametrize(
+    ("power_off", "words"),
+    [("confirmed", "The drive is off. These are the readings"), ("failed", "The drive may still have power.")],
+)
+def test_what_is_said_of_old_readings_follows_the_power(open_page, power_off, words):
+    facts = {"status": {"reading": {}, "run": {"power_off": power_off}}, "fresh": True, "running": False,
+             "reading_age_s": 3}  # fmt: skip
+    assert words in open_page().evaluate(f"{imported('app/state')}.then((m) => m.readingNote({json.dumps(facts)}).words)")
+
+
+def test_the_big_numbers_name_the_current_from_duty(service, open_page):
+    service.start("steps", pace="real-time", repeats=20)
+    page = open_page("#numbers")
+    page.locator(".numbers-values dt").get_by_text("current from duty", exact=True).wait_for()
+    service.client.post("/stop").raise_for_status()
+    page.get_by_text("At rest").wait_for()
