@@ -66,6 +66,7 @@ export async function startForm(place, live, queued) {
     replace(answer);
     if ((await plan()) === null) {
       replace(answer, problemBox(new Error("Not started, nothing has moved, nothing is recorded. See what is marked.")));
+      form.element.querySelector("[aria-invalid=true]")?.closest(".field").scrollIntoView({ block: "nearest" });
       return;
     }
     const done = await attempt(answer, () => post(path, body()));
