@@ -15,6 +15,15 @@ RUNNING = {"state": "running", "run": {"experiment_id": 2, "power_off": None}}
 STOPPED = {"state": "idle", "run": {"experiment_id": 1, "power_off": "confirmed"}}
 POWERED = {"state": "idle", "run": {"experiment_id": 1, "power_off": "failed"}}
 
+SETTLED = """() => new Promise((done) => {
+  let [at, since_ms] = [scrollY, performance.now()];
+  const look = () => {
+    if (scrollY !== at) [at, since_ms] = [scrollY, performance.now()];
+    if (performance.now() - since_ms > 500) done();
+    else requestAnimationFrame(look);
+  };
+  look();
+})"""  # once the page has not scrolled for half a second
 LAST_CYCLE = (
     r"^The drive is off\. These are the readings of the last cycle before that, {}; since then nothing is measured\."
 )
@@ -266,3 +275,35 @@ def test_bounds_of_the_service_are_said_as_they_are_meant(open_page, allowed, wo
     error = {"message": "as the service says it", "found": 3.14159265, "allowed": allowed, "unit": "rad"}
     said = open_page().evaluate(f"{imported('ui/form')}.then((m) => m.limitWords({json.dumps(error)}))")
     assert said == words
+
+
+@pytest.mark.parametrize("motion", ["no-preference", "reduce"])
+def test_on_a_narrow_screen_the_page_goes_to_the_joint_that_has_started(service, open_page, motion):
+    page = open_page("#bench?kind=steps&repeats=20", width=400, height=800)
+    page.emulate_media(reduced_motion=motion)
+    live = page.get_by_label("Live", exact=True)
+    page.get_by_label("repeats").wait_for()
+    assert live.bounding_box()["y"] > 800
+    start(page)
+    page.evaluate(SETTLED)
+    head = page.locator(".top").bounding_box()
+    assert head["height"] <= live.bounding_box()["y"] <= head["height"] + 60
+    page.keyboard.press("Escape")
+    page.locator(".badge.idle").wait_for()
+    service.runner.wait(10.0)
+
+
+def test_where_the_joint_is_in_view_nothing_scrolls_at_a_start(service, open_page):
+    page = open_page("#bench?kind=steps&repeats=20", height=800)
+    page.get_by_label("repeats").wait_for()
+    page.mouse.move(200, 400)
+    page.mouse.wheel(0, 150)
+    page.evaluate(SETTLED)
+    before = page.evaluate("scrollY")
+    assert before > 100
+    start(page)
+    page.wait_for_timeout(700)
+    assert page.evaluate("scrollY") == before
+    page.keyboard.press("Escape")
+    page.locator(".badge.idle").wait_for()
+    service.runner.wait(10.0)
