@@ -230,7 +230,7 @@ def test_the_big_numbers_name_the_current_from_duty(service, open_page):
     page = open_page("#numbers")
     page.locator(".numbers-values dt").get_by_text("current from duty", exact=True).wait_for()
     service.client.post("/stop").raise_for_status()
-    page.get_by_text("At rest").wait_for()
+    page.get_by_text("The drive is off: steps stopped").wait_for()
 
 
 def test_a_limit_is_said_in_the_units_of_the_page_and_is_in_sight(service, open_page):

@@ -56,6 +56,7 @@ export function numbersView(place, { live, state }) {
 export function doingWords({ fresh, status, running }) {
   if (!fresh) return "No news from the service";
   const run = status?.run;
-  if (!running || !run) return run ? `At rest: ${run.kind} ${run.outcome}` : "At rest";
+  if (!run) return "Nothing has run yet";
+  if (!running) return `${run.power_off === "failed" ? "The drive may still have power" : "The drive is off"}: ${run.kind} ${run.outcome}`;
   return `${run.kind}, trial ${run.trial_index + 1} of ${run.trial_count}`;
 }
