@@ -4,6 +4,8 @@ Each message names the file or the quantity, what was found, what is allowed, th
 next step. Each class has the matching builtin as a second base.
 """
 
+from dataclasses import dataclass
+
 
 class BenchError(Exception):
     """Base of all errors of the bench. Raised only through a subclass."""
@@ -22,8 +24,36 @@ class ParameterError(BenchError, ValueError):
     """Raised before motion when the parameters of an experiment are unknown, of the wrong type or out of range."""
 
 
+@dataclass(frozen=True, slots=True)
+class OutOfRange:
+    """A quantity outside its bounds, as numbers: for who shows it in other units than the message has.
+
+    Attributes:
+        quantity: in words, with the name of the parameter ("a load of loads_kg").
+        found: the value, in `unit`.
+        unit: SI unit; "" where the quantity has none.
+        low, high: least and greatest value allowed, in `unit`; None where there is no such bound.
+        margin: what the bounds keep from the limits of the bench, in `unit`.
+    """
+
+    quantity: str
+    found: float
+    unit: str
+    low: float | None = None
+    high: float | None = None
+    margin: float = 0.0
+
+
 class LimitError(BenchError, ValueError):
-    """Raised before motion when what is asked lies outside the limits of the bench."""
+    """Raised before motion when what is asked lies outside the limits of the bench.
+
+    Attributes:
+        out_of_range: what the message says, as numbers; None where it is about something else than one quantity.
+    """
+
+    def __init__(self, message: str, out_of_range: OutOfRange | None = None) -> None:
+        super().__init__(message)
+        self.out_of_range = out_of_range
 
 
 class LimitTrip(BenchError, RuntimeError):
@@ -61,7 +91,7 @@ class UnknownKindError(BenchError, KeyError):
         return Exception.__str__(self)  # KeyError would show the message in quotes
 
 
-def quantity_message(quantity: str, found: float, allowed: str, unit: str, next_step: str = "") -> str:
+def quantity_message(quantity: str, found: float, allowed: str, unit: str, next_step: str = "", why: str = "") -> str:
     """One sentence that names a quantity, what was found, what is allowed and its unit.
 
     Args:
@@ -70,9 +100,10 @@ def quantity_message(quantity: str, found: float, allowed: str, unit: str, next_
         allowed: the allowed range in words and numbers ("at most 2", "-1 .. 1"), in `unit`.
         unit: SI unit; "" where the quantity has none.
         next_step: what the reader can do about it.
+        why: where the allowed range comes from, in a few words; in brackets behind it.
     """
     suffix = f" {unit}" if unit else ""
-    message = f"{quantity} is {found:.6g}{suffix}; allowed is {allowed}{suffix}"
+    message = f"{quantity} is {found:.6g}{suffix}; allowed is {allowed}{suffix}{f' ({why})' if why else ''}"
     return f"{message}. {next_step}" if next_step else message
 
 

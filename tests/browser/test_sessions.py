@@ -69,5 +69,5 @@ def test_big_numbers_follow_the_joint_and_stop_it(service, open_page):
         page.wait_for_timeout(100)
     assert len(seen) > 3, seen
     page.locator("button.numbers-stop").click()
-    page.get_by_text("At rest: steps stopped").wait_for()
+    page.get_by_text("The drive is off: steps stopped").wait_for()
     page.locator(".dimmed .numbers-values").wait_for()

@@ -120,3 +120,17 @@ def test_another_one_has_the_bench_and_everybody_can_stop(service, open_page):
     service.stranger.delete("/lease", headers=headers)
     page.get_by_text("The bench is free.").wait_for()
     open_page.complaints[:] = [text for text in open_page.complaints if "409" not in text]
+
+
+def test_whose_bench_it_is_is_read_whole_beside_the_form(service, open_page):
+    """A browser without a token, while somebody else runs something: the name is said to be that of a token."""
+    page = open_page(token=False)
+    service.start("steps", pace="real-time", repeats=20)
+    lease = page.get_by_text("Token 'environment' has the bench while the experiment runs: you can watch and stop")
+    lease.wait_for()
+    page.locator(".live .readings").get_by_text("position").wait_for()
+    text, panel = lease.bounding_box(), page.get_by_label("Start an experiment", exact=True).bounding_box()
+    assert text["x"] + text["width"] <= panel["x"] + panel["width"]
+    assert lease.evaluate("(one) => one.scrollWidth <= one.clientWidth")
+    service.client.post("/stop").raise_for_status()
+    page.get_by_text("The bench is free.").wait_for()

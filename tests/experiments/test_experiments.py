@@ -184,7 +184,11 @@ def test_a_search_without_an_estimate_gives_none_and_says_why():
 
 REFUSED = [
     ("steps", {"load_kg": 0.25}, "load_kg is 0.25 kg; allowed is at most 0.1 kg"),
-    ("steps", {"angle_rad": 2.2}, "angle_rad is 2.2 rad; allowed is -2.05 .. 2.05"),
+    (
+        "steps",
+        {"angle_rad": 2.2},
+        "angle_rad is 2.2 rad; allowed is -2.05 .. 2.05 rad (the limits less a margin of 0.15 rad)",
+    ),
     ("steps", {"fastest_rad_s": 9.0}, "fastest_rad_s is 9 rad/s; allowed is at most 8 rad/s"),
     ("load-sweep", {"loads_kg": [0.0, 0.2]}, "a load of loads_kg is 0.2 kg; allowed is at most 0.1 kg"),
     ("load-sweep", {"angles_rad": [-3.0]}, "an angle of angles_rad is -3 rad"),

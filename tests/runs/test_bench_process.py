@@ -15,7 +15,7 @@ import pytest
 
 from bench.config.channels import RECORDED
 from bench.config.configuration import BenchConfiguration, default_configuration
-from bench.errors import BusyError, LimitError, ParameterError, PromptError, UnknownKindError
+from bench.errors import BusyError, LimitError, OutOfRange, ParameterError, PromptError, UnknownKindError
 from bench.runs.bench_process import process
 from bench.runs.bench_process.child import Child
 from bench.runs.bench_process.errors import BenchProcessError, NotBegunError
@@ -294,14 +294,14 @@ def test_close_stops_and_nothing_starts_afterwards(tmp_path):
         DriveConnectionError("can0 node 5", "no answer in 0.3 s"),
         UnknownKindError("there is no 'jump'"),
         OSError(28, "No space left on device"),
-        LimitError("load_kg is 5 kg"),
+        LimitError("load_kg is 5 kg", OutOfRange("load_kg", 5.0, "kg", high=0.1)),
     ],
 )
 def test_errors_are_the_same_on_the_other_side(error):
     found = error_of(failure_of(1, error))
-    assert (type(found), str(found), vars(found).get("device")) == (
-        type(error), str(error), getattr(error, "device", None),
-    )  # fmt: skip
+    assert (type(found), str(found)) == (type(error), str(error))
+    for name in ("device", "out_of_range"):
+        assert vars(found).get(name) == getattr(error, name, None)
 
 
 def test_the_first_reason_since_the_start_is_the_one_that_counts():

@@ -2,6 +2,11 @@
 
 import pytest
 
+from bench.errors import LimitError, quantity_message
+from bench.experiments.registry import find_kind
+from bench.service.http.problems import InvalidFieldsError
+from bench.service.routes.refused_fields import told_at_its_fields
+
 
 def plan(service, kind, **parameters):
     return service.client.post("/experiments/plan", json={"kind": kind, "parameters": parameters})
@@ -34,6 +39,37 @@ def test_what_the_bench_refuses_is_said_at_its_field(service, kind, parameters, 
     (problem,) = answer.json()["errors"]
     assert problem["field"] == field
     assert words in problem["message"]
+
+
+@pytest.mark.parametrize("path", ["/experiments/plan", "/experiments"])
+@pytest.mark.parametrize(
+    ("kind", "parameters", "field", "found", "allowed", "unit"),
+    [
+        ("steps", {"angle_rad": 8.72665}, "angle_rad", 8.72665, {"ge": -2.05, "le": 2.05, "margin": 0.15}, "rad"),
+        ("steps", {"load_kg": 5}, "load_kg", 5, {"le": 0.1}, "kg"),
+        ("steps", {"fastest_rad_s": 9}, "fastest_rad_s", 9, {"le": 8}, "rad/s"),
+        ("load-sweep", {"angles_rad": [-3]}, "angles_rad", -3, {"ge": -2.05, "le": 2.05, "margin": 0.15}, "rad"),
+        ("steady-speeds", {"speeds_rad_s": [20]}, "speeds_rad_s", 20, {"le": 8}, "rad/s"),
+        # of a speed and a tenth, the value found is not the one that was asked for
+        ("speed-sweep", {"speeds_rad_s": [7.9]}, "speeds_rad_s", None, {}, ""),
+    ],
+)
+def test_a_limit_of_the_bench_is_told_with_its_numbers(idle, path, kind, parameters, field, found, allowed, unit):
+    answer = idle.client.post(path, json={"kind": kind, "parameters": parameters})
+    assert answer.status_code == 422
+    assert answer.json()["kind"] == "LimitError"
+    (problem,) = answer.json()["errors"]
+    assert problem["field"] == f"parameters.{field}"
+    assert (problem["found"], problem["allowed"], problem["unit"]) == (found, pytest.approx(allowed), unit)
+
+
+def test_a_limit_of_the_configuration_is_no_field_of_the_form(service):
+    kind = find_kind("excitation")
+    message = quantity_message("motion.speed_rad_s", 9.0, "at most 8", "rad/s")
+    with pytest.raises(InvalidFieldsError) as caught, told_at_its_fields(kind):
+        raise LimitError(message)
+    assert "speed_rad_s" in kind.parameters.model_fields
+    assert caught.value.errors == []
 
 
 def test_a_typing_error_leaves_no_record_and_a_refusal_does(service):

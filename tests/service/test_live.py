@@ -1,11 +1,20 @@
 """The live stream goes on where it was left."""
 
+import json
+from dataclasses import replace
+from math import nan
+
 import numpy as np
 import pytest
 
+from bench.config.configuration import default_configuration
+from bench.control.cycle import Reading
+from bench.runs.bench_control import RunnerStatus
 from bench.runs.live import LiveBuffer
 from bench.service.live.replay import MOST_REPLAYED, GapError, Mark, missed
+from bench.service.live.status import status_of
 from bench.store import Store
+from drivers.contract import Sample, Status
 from tests.service.listening import hear, left_at, listen, of_run, recorded, rows_of, times, until
 
 LIFE = "0123abcd"
@@ -105,3 +114,15 @@ def test_marks_read_back():
     assert Mark.read(str(mark)) == mark
     for other in ("", "5", "x.1.2.3", f"{LIFE}.1.2", f"{LIFE}.1.2.3.4", f"{LIFE}.1.2.{'9' * 30}"):
         assert Mark.read(other) is None
+
+
+@pytest.mark.parametrize("measured", [False, True])
+def test_a_current_that_is_not_measured_is_told_as_an_estimate(measured):
+    sample = Sample(0.0, 0.0, 0.5, 0.6, 0.7, 0.8 if measured else nan, 24.0, nan, Status.ENABLED)
+    reading = Reading(2.0, sample, 0.6, 0.8, 0.82)
+    runner = RunnerStatus(1, "steps", "running", "", 0, 1, 0.0, reading, None, default_configuration().limits)
+    told = json.loads(status_of(runner, True, None).model_dump_json())["reading"]
+    assert (told["current_a"], told["current_measured"], told["current_estimate_a"]) == (0.8, measured, 0.82)
+    nothing = Reading(2.0, sample._replace(current_a=nan), 0.6, nan, nan)
+    told = json.loads(status_of(replace(runner, reading=nothing), True, None).model_dump_json())["reading"]
+    assert (told["current_a"], told["current_measured"], told["current_estimate_a"]) == (None, False, None)

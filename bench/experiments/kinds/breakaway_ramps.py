@@ -13,7 +13,7 @@ from bench.config.quantities import quantity
 from bench.config.reflected_load import load_current_a
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure, Reading
-from bench.errors import LimitError, quantity_message
+from bench.errors import LimitError, OutOfRange, quantity_message
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.excursion import BRAKING_SHARE, comparing_cycles, slip_index
 from bench.experiments.parts.joint import Joint, Part
@@ -189,8 +189,11 @@ def _refuse_excursion(parameters: BreakawayRampsParameters, configuration: Bench
     compared_rad = 2.0 * parameters.slip_speed_rad_s * cycles * period_s
     least_rad = max(2.0 * (configuration.rig.gear.backlash_rad or 0.0), compared_rad)
     if parameters.excursion_rad < least_rad:
-        allowed = f"at least {least_rad:.3g} (twice the backlash, or what slip_speed_rad_s makes of it)"
-        raise LimitError(quantity_message("excursion_rad", parameters.excursion_rad, allowed, "rad"))
+        why = "twice the backlash, or what slip_speed_rad_s makes of it"
+        message = quantity_message(
+            "excursion_rad", parameters.excursion_rad, f"at least {least_rad:.3g}", "rad", why=why
+        )
+        raise LimitError(message, OutOfRange("excursion_rad", parameters.excursion_rad, "rad", low=least_rad))
 
 
 def _duration_s(parameters: BreakawayRampsParameters, configuration: BenchConfiguration) -> float:

@@ -7,7 +7,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure
-from bench.errors import ExperimentError, LimitError, quantity_message
+from bench.errors import ExperimentError, LimitError, OutOfRange, quantity_message
 from bench.experiments.analysis.commissioning_checks import Finding, Push, findings, position_findings
 from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, results_of_the_trial, trial_plan
 from bench.experiments.parts.joint import Joint
@@ -52,8 +52,11 @@ def _refuse(parameters: CommissioningParameters, configuration: BenchConfigurati
     refuse_currents(configuration)
     least_rad = 20.0 * resolution_rad(configuration.rig)
     if parameters.excursion_rad < least_rad:
-        allowed = f"at least {least_rad:.3g} (20 encoder counts)"
-        raise LimitError(quantity_message("excursion_rad", parameters.excursion_rad, allowed, "rad"))
+        why = "20 encoder counts"
+        message = quantity_message(
+            "excursion_rad", parameters.excursion_rad, f"at least {least_rad:.3g}", "rad", why=why
+        )
+        raise LimitError(message, OutOfRange("excursion_rad", parameters.excursion_rad, "rad", low=least_rad))
 
 
 def commission(parameters: CommissioningParameters, configuration: BenchConfiguration) -> Procedure:

@@ -13,7 +13,7 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure, Reading
-from bench.errors import LimitError, quantity_message
+from bench.errors import LimitError, OutOfRange, quantity_message
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.excursion import BRAKING_SHARE
 from bench.experiments.parts.joint import Joint
@@ -138,8 +138,11 @@ def _refuse(parameters: ReversalsParameters, configuration: BenchConfiguration) 
         ends_rad = [parameters.angle_rad - amplitude_rad, parameters.angle_rad + amplitude_rad]
         refuse_angles("angle_rad and an amplitude of amplitudes_rad", [0.0, *ends_rad], OVERSHOOT_RAD, configuration)
         if amplitude_rad < least_rad:
-            allowed = f"at least {least_rad:.3g} ({LEAST_COUNTS:g} encoder counts)"
-            raise LimitError(quantity_message("an amplitude of amplitudes_rad", amplitude_rad, allowed, "rad"))
+            why = f"{LEAST_COUNTS:g} encoder counts"
+            message = quantity_message(
+                "an amplitude of amplitudes_rad", amplitude_rad, f"at least {least_rad:.3g}", "rad", why=why
+            )
+            raise LimitError(message, OutOfRange("an amplitude of amplitudes_rad", amplitude_rad, "rad", low=least_rad))
     refuse_speed("speed_rad_s", parameters.speed_rad_s, configuration)
     refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
     refuse_currents(configuration)

@@ -5,7 +5,7 @@ from math import pi, radians
 
 from bench.config.configuration import BenchConfiguration
 from bench.control.servo import closes_positions_alone
-from bench.errors import ConfigurationError, LimitError, quantity_message
+from bench.errors import ConfigurationError, LimitError, OutOfRange, quantity_message
 from bench.experiments.parts.profile import Trapezoid
 from drivers.contract import Description, Mode
 
@@ -29,7 +29,8 @@ def refuse_load(name: str, load_kg: float, configuration: BenchConfiguration) ->
         step = "Hang a lighter load"
         if load_kg >= 1.0 and load_kg * 1e-3 <= limit_kg:
             step = f"Are grams meant? {load_kg:g} g are {load_kg * 1e-3:g} kg"
-        raise LimitError(quantity_message(name, load_kg, f"at most {limit_kg:g}", "kg", step))
+        message = quantity_message(name, load_kg, f"at most {limit_kg:g}", "kg", step)
+        raise LimitError(message, OutOfRange(name, load_kg, "kg", high=limit_kg))
 
 
 def refuse_angles(name: str, angles_rad: Iterable[float], margin_rad: float, configuration: BenchConfiguration) -> None:
@@ -38,18 +39,20 @@ def refuse_angles(name: str, angles_rad: Iterable[float], margin_rad: float, con
     low_rad, high_rad = limits.position_min_rad + margin_rad, limits.position_max_rad - margin_rad
     for angle_rad in angles_rad:
         if not low_rad <= angle_rad <= high_rad:
-            allowed = f"{low_rad:.4g} .. {high_rad:.4g} (the limits less a margin of {margin_rad:.4g} rad)"
+            allowed, why = f"{low_rad:.4g} .. {high_rad:.4g}", f"the limits less a margin of {margin_rad:.4g} rad"
             meant_rad = radians(angle_rad)
             degrees_meant = abs(angle_rad) > 2.0 * pi and low_rad <= meant_rad <= high_rad
             step = f"Are degrees meant? {angle_rad:g} degrees are {meant_rad:.4g} rad" if degrees_meant else ""
-            raise LimitError(quantity_message(name, angle_rad, allowed, "rad", step))
+            message = quantity_message(name, angle_rad, allowed, "rad", step, why)
+            raise LimitError(message, OutOfRange(name, angle_rad, "rad", low_rad, high_rad, margin_rad))
 
 
 def refuse_speed(name: str, speed_rad_s: float, configuration: BenchConfiguration) -> None:
     """Raise `LimitError` for a speed above the limit."""
     limit_rad_s = configuration.limits.speed_rad_s
     if speed_rad_s > limit_rad_s:
-        raise LimitError(quantity_message(name, speed_rad_s, f"at most {limit_rad_s:g}", "rad/s"))
+        message = quantity_message(name, speed_rad_s, f"at most {limit_rad_s:g}", "rad/s")
+        raise LimitError(message, OutOfRange(name, speed_rad_s, "rad/s", high=limit_rad_s))
 
 
 def refuse_slow_move(name: str, speed_rad_s: float, way_rad: float, configuration: BenchConfiguration) -> None:

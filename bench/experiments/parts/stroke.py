@@ -11,7 +11,7 @@ import numpy as np
 from bench.config.configuration import BenchConfiguration
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Reading
-from bench.errors import LimitError, quantity_message
+from bench.errors import LimitError, OutOfRange, quantity_message
 from bench.experiments.analysis.saturation import LEAST_READINGS, Stroke, motion_of
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.profile import SetPoint, run_up
@@ -84,7 +84,8 @@ def refuse_travel(name: str, speed_rad_s: float, settings: StrokeSettings) -> No
             f"have to fit into {settings.low_rad:.4g} .. {settings.high_rad:.4g} rad: ask for less, or use an arm that "
             "may turn further (limits.position_min_rad, limits.position_max_rad)"
         )
-        raise LimitError(quantity_message(name, speed_rad_s, f"at most {greatest:.4g}", "rad/s", why))
+        message = quantity_message(name, speed_rad_s, f"at most {greatest:.4g}", "rad/s", why)
+        raise LimitError(message, OutOfRange(name, speed_rad_s, "rad/s", high=greatest))
 
 
 class Strokes:

@@ -43,7 +43,10 @@ class FieldProblem(BaseModel):
     message: str = Field(description="what is wanted", examples=["Input should be less than or equal to 0.1"])
     found: Any = Field(default=None, description="what was sent")
     allowed: dict[str, Any] = Field(
-        default={}, description="the bounds that apply; of an unknown key, the known ones", examples=[{"le": 0.1}]
+        default={},
+        description="the bounds that apply, and the `margin` that they keep from the limits of the bench; "
+        "of an unknown key, the known ones",
+        examples=[{"le": 0.1}],
     )
     unit: str = Field(default="", description="SI unit of the field", examples=["kg"])
 

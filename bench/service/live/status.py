@@ -1,5 +1,6 @@
 """What the bench is doing, as /bench and /live answer it."""
 
+from math import isfinite
 from typing import Literal
 
 from pydantic import BaseModel, Field
@@ -55,12 +56,14 @@ class Run(BaseModel):
 
 
 class ReadingNow(BaseModel):
-    """The last sample, SI; null where the drive does not measure it."""
+    """The last sample, SI; null where the drive does not measure it. After a run it is that of its last cycle."""
 
     time_s: Number
     position_rad: Number
     velocity_rad_s: Number
-    current_a: Number
+    current_a: Number = Field(description="measured, else by eq. (3) of the paper; see `current_measured`")
+    current_measured: bool = Field(description="false where `current_a` is no measurement, or is null")
+    current_estimate_a: Number = Field(description="from duty, speed and supply by eq. (3); null where not known")
     duty: Number
     supply_v: Number
     temperature_c: Number
@@ -136,6 +139,8 @@ def _reading(reading: Reading, power: str) -> ReadingNow:
         position_rad=sample.position_rad,
         velocity_rad_s=reading.velocity_rad_s,
         current_a=reading.current_a,
+        current_measured=isfinite(sample.current_a),
+        current_estimate_a=reading.current_estimate_a,
         duty=sample.duty,
         supply_v=sample.supply_v,
         temperature_c=sample.temperature_c,

@@ -1,17 +1,15 @@
 """/experiments/plan: what a start would move, how far and for how long; nothing moves and nothing is recorded."""
 
-from collections.abc import Iterable
-
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel, Field
 
 from bench.config.configuration import BenchConfiguration
-from bench.errors import BenchError
 from bench.experiments.kind import TrialPlan
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.service.auth.access import require_viewer
-from bench.service.http.problems import FieldProblem, InvalidFieldsError, problems
+from bench.service.http.problems import problems
 from bench.service.routes.queue_models import NewExperiment
+from bench.service.routes.refused_fields import told_at_its_fields
 from bench.service.services import RunnerOf
 
 router = APIRouter(tags=["experiments"], dependencies=[Depends(require_viewer)])
@@ -38,22 +36,10 @@ def plan(runner: RunnerOf, body: NewExperiment) -> PlannedStart:
     body.refuse_mistyped()
     kind = find_kind(body.kind)
     parameters = parse_parameters(kind, body.parameters)
-    try:
+    with told_at_its_fields(kind):
         kind.refuse(parameters, runner.configuration)
-    except BenchError as error:
-        fields = _field_of(str(error), kind.parameters.model_fields)
-        raise InvalidFieldsError(str(error), type(error).__name__, fields) from error
     plans = kind.plan(parameters, runner.configuration)
     return _motion(body.kind, plans, kind.duration_s(parameters, runner.configuration), runner.configuration)
-
-
-def _field_of(message: str, names: Iterable[str]) -> list[FieldProblem]:
-    """The parameter that a limit is about: the messages of limits begin with its name."""
-    return [
-        FieldProblem(field=f"parameters.{name}", message=message, found=None, allowed={}, unit="")
-        for name in names
-        if message.startswith((f"{name} ", f"a load of {name} "))
-    ]
 
 
 def _motion(kind: str, plans: list[TrialPlan], duration_s: float, configuration: BenchConfiguration) -> PlannedStart:

@@ -10,7 +10,7 @@ from fastapi.responses import FileResponse, StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.background import BackgroundTask
 
-from bench.experiments.registry import KINDS
+from bench.experiments.registry import KINDS, find_kind
 from bench.json_types import Json
 from bench.runs.bench_control import BenchControl
 from bench.runs.lease import Lease
@@ -26,6 +26,7 @@ from bench.service.http.repeated_start import Key, once
 from bench.service.records import Experiment, experiment_record
 from bench.service.routes.leases import LeaseOf
 from bench.service.routes.queue_models import NewExperiment, Note, Tags
+from bench.service.routes.refused_fields import told_at_its_fields
 from bench.service.services import RunnerOf, StoreOf
 from bench.store import Store
 from bench.store.errors import StoreError
@@ -98,7 +99,7 @@ async def start(
     body: NewExperiment,
     key: Key = None,
 ) -> Started:
-    """Refused before any motion (422, with value, limit and unit) where it would leave the limits.
+    """Refused before any motion (422, with field, value, limit and unit) where it would leave the limits.
 
     409 while another one runs, or somebody else has the bench. Watch it with GET /live, end it with POST /stop.
     """
@@ -122,7 +123,7 @@ def _begun(
     body.refuse_mistyped()  # a typing error is no failed start: nothing is recorded
 
     def begin() -> Started:
-        with lease.starting(caller.name):
+        with lease.starting(caller.name), told_at_its_fields(find_kind(body.kind)):
             begun = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
         note(request, f"started experiment {begun} ({body.kind})")
         return Started(experiment_id=begun, kind=body.kind)

@@ -6,9 +6,11 @@ const BASE = "/api/v1";
 const KEY = "friction-bench-token";
 
 export class Problem extends Error {
-  constructor(status, body) {
+  // tokenSent: the request carried a token; with 401 it is the wrong one, not a missing one
+  constructor(status, body, tokenSent = false) {
     super(body.detail || body.title || `the service answered ${status}`);
     this.status = status;
+    this.tokenMissing = status === 401 && !tokenSent;
     this.errors = body.errors ?? [];
   }
 }
@@ -46,7 +48,7 @@ async function request(path, options = {}) {
   if (!response.ok) {
     const body = await response.json().catch(() => ({}));
     if (response.status === 401) document.dispatchEvent(new CustomEvent("token-needed"));
-    throw new Problem(response.status, body);
+    throw new Problem(response.status, body, Boolean(options.headers?.Authorization));
   }
   return response;
 }

@@ -78,8 +78,14 @@ export function readingNote({ status, fresh, running, silent_s, reading_age_s: a
   if (!status?.reading) return { dimmed: false, words: "" };
   if (!fresh) return { dimmed: true, words: `Old: no news from the service for ${Math.round(silent_s)} s.` };
   if (running) return { dimmed: false, words: "" };
-  const power = status.run?.power_off === "failed" ? "The drive may still have power." : "The drive is off.";
-  return { dimmed: true, words: `Last reading${age_s === null ? "" : `, ${ago(age_s)}`}. ${power}` };
+  const since = age_s === null ? "" : `, ${ago(age_s)}`;
+  if (!poweredOff({ status, fresh, running })) return { dimmed: true, words: `Last reading${since}. The drive may still have power.` };
+  return { dimmed: true, words: `The drive is off. These are the readings of the last cycle before that${since}; since then nothing is measured.` };
+}
+
+// whether the run has ended with its power off: no reading comes after that one. Pure.
+export function poweredOff({ status, fresh, running }) {
+  return Boolean(fresh && !running && status?.reading && status.run?.power_off !== "failed");
 }
 
 export function ago(age_s) {

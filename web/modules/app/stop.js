@@ -46,7 +46,8 @@ async function ask(tell, wanted) {
       return await post("/stop", { reason: "STOP on the page" }, TIMEOUT_MS);
     } catch (error) {
       if (error.status === 401) {
-        tell("no-token", `Not stopped: this page has no token yet. Paste the token and it stops at once. If it cannot wait: ${EMERGENCY.toLowerCase().replace(".", "")}, or press Ctrl-C where 'friction-bench serve' runs.`);
+        const lacking = error.tokenMissing ? "this page has no token yet" : "the service refused the token of this page";
+        tell("no-token", `Not stopped: ${lacking}. Paste the token and it stops at once. If it cannot wait: ${EMERGENCY.toLowerCase().replace(".", "")}, or press Ctrl-C where 'friction-bench serve' runs.`);
         return null;
       }
       const why = error.name === "TimeoutError" ? `no answer within ${TIMEOUT_MS / 1000} s` : error.message;

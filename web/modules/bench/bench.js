@@ -11,13 +11,15 @@ import { withShownUnit } from "../ui/units.js";
 import { queuePanel } from "../queue/queue.js";
 import { startForm } from "./start.js";
 
+const LEAST_SEEN_PX = 200; // of a panel that is in view
+
 export function benchView(place, bench) {
   const { live, state } = bench;
   const [start, lease, queue, drive, fault, plot] = ["div", "div", "div", "div", "div", "div"].map((tag) => h(tag));
   replace(place, h("div", { class: "columns" }, panel("Start an experiment", lease, h("div", { class: "gap" }), start), h("div", { class: "wide" }, panel("Live", plot)),
     panel("Queue", queue), panel("Drive and limits", drive, fault, h("p", {}, h("a", { href: "#commission" }, "Commission a joint of your own")), h("p", {}, h("a", { href: "#numbers" }, "Big numbers, for a tablet beside the bench")))));
   const waiting = queuePanel(queue);
-  const form = startForm(start, live, () => waiting.refresh());
+  const form = startForm(start, live, () => waiting.refresh(), () => bringIntoSight(plot.closest(".panel")));
   const refresh = () => attempt(drive, async () => replace(drive, description(await get("/bench"))));
   let shown = live.status?.run?.experiment_id;
   const changed = () => {
@@ -37,6 +39,14 @@ export function benchView(place, bench) {
     live.removeEventListener("status", changed);
     leave();
   };
+}
+
+// on a narrow screen the picture of what moves stands far below the form
+export function bringIntoSight(one) {
+  const { top, bottom } = one.getBoundingClientRect();
+  const seen = Math.min(bottom, innerHeight) - Math.max(top, 0);
+  if (seen >= Math.min(LEAST_SEEN_PX, bottom - top)) return;
+  one.scrollIntoView({ block: "start", behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "instant" : "smooth" });
 }
 
 function description(bench) {

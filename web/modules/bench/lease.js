@@ -24,7 +24,7 @@ export function leasePanel(place, live) {
     shown = key;
     const [text, mine] = leaseWords(lease, name);
     replace(state, text);
-    state.className = lease && !mine ? "badge stale" : "soft";
+    state.className = lease && !mine ? "badge stale lease" : "soft";
     take.hidden = Boolean(lease);
     release.hidden = !mine || lease.remaining_s === null;
   };
@@ -44,5 +44,7 @@ export function leaseWords(lease, name) {
   if (!lease) return ["The bench is free.", false];
   const until = lease.remaining_s === null ? " while the experiment runs" : "";
   if (lease.token === name) return [`You have the bench${until}.`, true];
-  return [`${lease.holder || lease.token} has the bench${until}: you can watch and stop, not start.`, false];
+  // a name that the holder gave is a person's; without one there is the token's alone
+  const who = !lease.holder || lease.holder === lease.token ? `Token '${lease.token}'` : lease.holder;
+  return [`${who} has the bench${until}: you can watch and stop, not start.`, false];
 }

@@ -1,10 +1,10 @@
 // Live: what the joint does, drawn with each frame while rows arrive; frozen, zoomed, channel by channel.
 
-import { readingNote } from "../app/state.js";
+import { poweredOff, readingNote } from "../app/state.js";
 import { liveJoint } from "../joint/livejoint.js";
 import { Chart } from "../plots/chart.js";
 import { h, replace } from "../ui/dom.js";
-import { axisTitle, fixed, number } from "../ui/format.js";
+import { axisTitle, fixed, nameOf, number } from "../ui/format.js";
 import { shownUnit } from "../ui/units.js";
 import { LatestTrials } from "./latesttrials.js";
 import { around, HALF, LOAD, loadBands, newest } from "./load.js";
@@ -62,7 +62,7 @@ export function livePlot(place, { live, state }) {
     outcome.textContent = run ? sentence(run) : "Nothing has run yet. Start an experiment.";
     const before = load.experiment === run?.experiment_id ? load.text : null;
     load = { experiment: run?.experiment_id, text: newest(live.rows) ?? before };
-    replace(readings, readingsOf(live.status?.reading, load.text));
+    replace(readings, readingsOf(live.status?.reading, load.text, poweredOff(state.now)));
   };
   const aged = () => {
     const { dimmed, words } = readingNote(state.now);
@@ -131,10 +131,20 @@ const STEPS = { rad: 0.001, "rad/s": 0.005, A: 0.001, "": 0.001, V: 0.01, "°C":
 const READINGS = [["position", "position_rad", "rad"], ["speed", "velocity_rad_s", "rad/s"], ["current", "current_a", "A"], ["duty", "duty", ""],
   ["supply", "supply_v", "V"], ["temperature", "temperature_c", "°C"]];
 
-function readingsOf(values, load) {
+// what is true only while the power is on: of a joint that coasts or rests, the last values say nothing
+const WITH_POWER = ["velocity_rad_s", "current_a", "duty"];
+
+// off: the power was taken off after this reading
+export function readingsOf(values, load, off) {
   const known = READINGS.filter(([, name]) => values && values[name] !== null && values[name] !== undefined);
-  const read = known.map(([text, name, unit]) => [text, readingText(values[name], unit)]);
+  const label = (text, name) => `${off && WITH_POWER.includes(name) ? "last " : ""}${name === "current_a" ? currentName(values) : text}`;
+  const read = known.map(([text, name, unit]) => [label(text, name), readingText(values[name], unit)]);
   return [...read, ...(load ? [["load current, as last found", load]] : [])].map(([text, value]) => h("div", {}, h("dt", {}, text), h("dd", {}, value)));
+}
+
+// a current that the drive does not measure is called on the whole page what it is made of
+export function currentName(reading) {
+  return nameOf(reading && reading.current_measured === false ? "current_estimate_a" : "current_a");
 }
 
 export function readingText(value, si) {

@@ -12,8 +12,8 @@ import { withShownUnit } from "../ui/units.js";
 
 const PLAN_AFTER_MS = 300; // of quiet in the fields
 
-// queued(): something was put into the queue
-export async function startForm(place, live, queued) {
+// queued(): something was put into the queue; begun(): an experiment has started
+export async function startForm(place, live, queued, begun) {
   const kinds = await attempt(place, async () => (await get("/experiment-kinds")).items);
   if (!kinds) return;
   const asked = here().query;
@@ -66,6 +66,7 @@ export async function startForm(place, live, queued) {
     replace(answer);
     if ((await plan()) === null) {
       replace(answer, problemBox(new Error("Not started, nothing has moved, nothing is recorded. See what is marked.")));
+      form.element.querySelector("[aria-invalid=true]")?.closest(".field").scrollIntoView({ block: "nearest" });
       return;
     }
     const done = await attempt(answer, () => post(path, body()));
@@ -73,6 +74,7 @@ export async function startForm(place, live, queued) {
     started = done.experiment_id ?? null;
     replace(answer, h("div", { class: "good", role: "status" }, told(done)));
     queued();
+    if (started !== null) begun();
   };
   // true for as long as it runs
   live.addEventListener("status", () => {

@@ -2,7 +2,7 @@
 
 import { readingNote } from "../app/state.js";
 import { newest } from "../bench/load.js";
-import { readingText } from "../bench/liveplot.js";
+import { currentName, readingText } from "../bench/liveplot.js";
 import { liveJoint, rowOf } from "../joint/livejoint.js";
 import { h, replace } from "../ui/dom.js";
 import { duration } from "../ui/format.js";
@@ -11,7 +11,8 @@ export function numbersView(place, { live, state }) {
   const [joint, doing, note] = [h("div", { class: "numbers-joint" }), h("p", { class: "numbers-doing", role: "status" }), h("p", { class: "soft numbers-note" })];
   const [angle, current, load, left] = ["angle", "current", "load current", "time left"].map((text) => {
     const value = h("dd", {}, "–");
-    return { value, element: h("div", {}, h("dt", {}, text), value) };
+    const name = h("dt", {}, text);
+    return { name, value, element: h("div", {}, name, value) };
   });
   const stop = h("button", { type: "button", class: "stop numbers-stop", onclick: () => document.getElementById("stop").click() }, "STOP");
   replace(place, h("section", { class: "numbers" }, doing, h("div", { class: "numbers-body" }, joint,
@@ -25,6 +26,7 @@ export function numbersView(place, { live, state }) {
     const run = status?.run;
     angle.value.textContent = Number.isFinite(row.position_rad) ? readingText(row.position_rad, "rad") : "–";
     current.value.textContent = Number.isFinite(row.current_a) ? readingText(row.current_a, "A") : "–";
+    current.name.textContent = currentName(status?.reading);
     load.value.textContent = newest(live.rows) ?? "–";
     left.value.textContent = now.running && run?.left_s > 0 ? duration(run.left_s) : "–";
     const words = doingWords(now);
@@ -54,6 +56,7 @@ export function numbersView(place, { live, state }) {
 export function doingWords({ fresh, status, running }) {
   if (!fresh) return "No news from the service";
   const run = status?.run;
-  if (!running || !run) return run ? `At rest: ${run.kind} ${run.outcome}` : "At rest";
+  if (!run) return "Nothing has run yet";
+  if (!running) return `${run.power_off === "failed" ? "The drive may still have power" : "The drive is off"}: ${run.kind} ${run.outcome}`;
   return `${run.kind}, trial ${run.trial_index + 1} of ${run.trial_count}`;
 }

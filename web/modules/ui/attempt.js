@@ -6,7 +6,7 @@ import { h } from "./dom.js";
 import { capital } from "./format.js";
 
 export function problemBox(error) {
-  const words = error.status === 401 ? "This needs the token: paste it at the head of the page." : capital(error.message);
+  const words = error.tokenMissing ? "This needs the token: paste it at the head of the page." : capital(error.message);
   return h("div", { class: "problem", role: "alert" }, words);
 }
 

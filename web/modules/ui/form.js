@@ -3,7 +3,7 @@
 
 import { h, replace } from "./dom.js";
 import { nameOf, number, plain } from "./format.js";
-import { shownUnit } from "./units.js";
+import { shownUnit, withShownUnit } from "./units.js";
 
 export class Form {
   #fields = new Map();
@@ -51,13 +51,15 @@ export class Form {
     const show = (message) => {
       input.setAttribute("aria-invalid", String(Boolean(message)));
       replace(problem, message && h("div", { class: "problem field-problem", role: "alert" }, message));
+      // while it is typed: what is said of it may stand behind the bar with Start
+      if (message && document.activeElement === input) problem.scrollIntoView({ block: "nearest" });
     };
     const check = () => {
       const message = problemOf(kind, read(kind, input));
       show(message);
       return !message;
     };
-    this.#fields.set(name, { read: () => read(kind, input), write: (value) => write(kind, input, value), show: (error) => show(error?.message), check });
+    this.#fields.set(name, { read: () => read(kind, input), write: (value) => write(kind, input, value), show: (error) => show(error && limitWords(error)), check });
     input.addEventListener("input", () => {
       check();
       this.changed();
@@ -117,6 +119,19 @@ function read(kind, input) {
 export function numberOrText(text) {
   const value = Number(text);
   return Number.isFinite(value) ? value : text;
+}
+
+// what the service says of a value outside its bounds, in the units that are shown: nobody has typed the 8.7 rad of 500°
+export function limitWords({ message, found, allowed = {}, unit = "" }) {
+  const { ge, gt, le, lt, margin } = allowed;
+  const [low, high] = [ge ?? gt, le ?? lt];
+  // in SI its own sentence, which knows more: "Are degrees meant?"
+  if (shownUnit(unit).factor === 1 || typeof found !== "number" || (low ?? high) === undefined) return message;
+  const said = (value) => withShownUnit(value, unit);
+  const least = low !== undefined && `${ge === undefined ? "above" : "at least"} ${said(low)}`;
+  const most = high !== undefined && `${le === undefined ? "below" : "at most"} ${said(high)}`;
+  const range = least && most && ge !== undefined && le !== undefined ? `${said(low)} to ${said(high)}` : [least, most].filter(Boolean).join(" and ");
+  return `${said(found)} is not allowed; allowed is ${range}${margin ? ` (the limits of the bench less a margin of ${said(margin)})` : ""}.`;
 }
 
 // what is wrong with a value that would be sent, in the units that are shown; "" where nothing is
