@@ -55,7 +55,20 @@ def read_recording_set(
         recordings = [_read(entry, table, mapping) for entry, table in zip(entries, tables, strict=True)]
         notes = [f"{table.place}: {table.told}" for table in tables if isinstance(table, Table) and table.told]
     check_recordings(recordings, rig, mapping)
+    notes += _without_load(recordings)
     return RecordingSet(name_of_set(paths), rig, recordings, tuple(notes))
+
+
+def _without_load(recordings: Sequence[Recording]) -> list[str]:
+    """Note of trials that do not tell their load: nothing that depends on it can be judged on them."""
+    silent = [one.name for one in recordings if "load_kg" not in one.conditions]
+    if not silent:
+        return []
+    which = (
+        "no trial tells" if len(silent) == len(recordings) else f"{len(silent)} of {len(recordings)} trials do not tell"
+    )
+    remedy = f"put it into {TRIALS_FILE}, or into the [[trials]] of a mapping (conditions = {{ load_kg = 0.1 }})"
+    return [f"{which} load_kg: effects of the load are not judged; {remedy}"]
 
 
 def name_of_set(paths: Sequence[Path]) -> str:
