@@ -15,6 +15,7 @@ help:            ## this list
 $(STAMP): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null \
 	    || { echo "Python 3.11 is needed, found '$(PYTHON)'; if it is elsewhere: make PYTHON=/path/to/python3.11"; exit 1; }
+	@echo "Installing into $(VENV): some minutes, the first time and after a change of what is needed."
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) --editable '.[dev,docs,test]'
 	touch $@

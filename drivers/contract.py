@@ -151,6 +151,21 @@ class FoundTable:
 
 
 @dataclass(frozen=True, slots=True)
+class Untold:
+    """A fact that neither drive nor settings tell, and for want of which its effort is unknown.
+
+    Attributes:
+        remedy: what is missing and what to set, in words, as the end of a sentence.
+        tells: with it, the drive measures its current.
+        takes: with it, the drive can be asked for a current.
+    """
+
+    remedy: str
+    tells: bool
+    takes: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Description:
     """Identity and capabilities of a drive, as found at connect.
 
@@ -168,6 +183,7 @@ class Description:
         notes: what the user should know of line and host, and what to do; a sentence each.
         tables: what was found beside, in the drive's own terms.
         counts_per_turn: encoder counts of a motor turn by the drive's own objects; NaN where it tells none.
+        untold: what has to be set before the drive can be used in full; None where nothing is.
     """
 
     device: str
@@ -187,6 +203,7 @@ class Description:
     notes: tuple[str, ...] = ()
     tables: tuple[FoundTable, ...] = ()
     counts_per_turn: float = nan
+    untold: Untold | None = None
 
 
 class Drive(Protocol):

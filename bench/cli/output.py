@@ -56,6 +56,13 @@ def complain(sentence: str) -> None:
     Console(stderr=True, soft_wrap=True).print(f"[bold red]error:[/] {shown(sentence)}", highlight=False)
 
 
+def remark(sentence: str) -> None:
+    """One sentence beside an answer that a program reads, on stderr."""
+    from rich.console import Console
+
+    Console(stderr=True, soft_wrap=True).print(shown(sentence), highlight=False)
+
+
 def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """A table; columns whose name ends in '#' hold numbers and stand to the right."""
     from rich.table import Table

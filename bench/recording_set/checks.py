@@ -7,6 +7,7 @@ import numpy as np
 
 from bench.config.rig import Rig
 from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.load_check import load_question
 from bench.recording_set.mapping import Mapping
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.channel_checks import check_channels
@@ -54,7 +55,8 @@ def check_recordings(recordings: Sequence[Recording], rig: Rig, mapping: Mapping
     A unit that the mapping states is taken as it is, except where the value is impossible in it.
 
     Raises:
-        RecordingSetError: a value outside physics, no position or no effort in any trial, a wrap, two units.
+        RecordingSetError: a value outside physics, a load that no effort carries, no position or no effort in any
+            trial, a wrap, two units.
     """
     judged = [one for one in recordings if len(one) >= FEWEST_ROWS]
     for recording in judged:
@@ -63,6 +65,9 @@ def check_recordings(recordings: Sequence[Recording], rig: Rig, mapping: Mapping
     if judged:
         facts = Facts(joint=rig.joint, horizontal=rig.horizontal, effort=rig.effort.quantity if rig.effort else None)
         _check_physics(judged, facts)
+        trial, asked = load_question(judged, rig, mapping)
+        if asked:
+            raise RecordingSetError(f"trial '{trial}'", asked)
     for recording in judged:  # a wrap goes to and fro, too, and was looked for before
         if problem := _degrees(recording, mapping):
             raise RecordingSetError(f"trial '{recording.name}'", problem)

@@ -29,6 +29,10 @@ from compensator.lab.recordings.recording import Recording
 
 RIG_FILE = "rig.toml"
 MAPPING_FILE = "mapping.toml"
+_NO_RIG = (
+    "a single file has no rig; name one with --rig rig.toml. For files of another bench "
+    "`friction-bench import --guess` writes it"
+)
 SourceTable = Table | ColumnTable
 
 
@@ -48,14 +52,30 @@ def read_recording_set(
     paths = [Path(one).absolute() for one in ([path] if isinstance(path, Path | str) else path)]
     with open_container(*paths) as container:
         mapping = mapping or own_mapping(container)
-        rig = rig or _read_rig(container)
         entries = entries_of(container, mapping)
         tables = [table_of(container, entry, mapping) for entry in entries]
+        if rig is None and (container.has(RIG_FILE) or not isinstance(container, Files)):
+            rig = _read_rig(container)
         _check_mapping_is_used(container, mapping, tables)
         recordings = [_read(entry, table, mapping) for entry, table in zip(entries, tables, strict=True)]
+        if rig is None:  # only now: nobody is to write one for a file that is no recording
+            raise RecordingSetError(container.path.name, _NO_RIG)
         notes = [f"{table.place}: {table.told}" for table in tables if isinstance(table, Table) and table.told]
     check_recordings(recordings, rig, mapping)
+    notes += _without_load(recordings)
     return RecordingSet(name_of_set(paths), rig, recordings, tuple(notes))
+
+
+def _without_load(recordings: Sequence[Recording]) -> list[str]:
+    """Note of trials that do not tell their load: nothing that depends on it can be judged on them."""
+    silent = [one.name for one in recordings if "load_kg" not in one.conditions]
+    if not silent:
+        return []
+    which = (
+        "no trial tells" if len(silent) == len(recordings) else f"{len(silent)} of {len(recordings)} trials do not tell"
+    )
+    remedy = f"put it into {TRIALS_FILE}, or into the [[trials]] of a mapping (conditions = {{ load_kg = 0.1 }})"
+    return [f"{which} load_kg: effects of the load are not judged; {remedy}"]
 
 
 def name_of_set(paths: Sequence[Path]) -> str:
@@ -75,8 +95,6 @@ def own_mapping(container: Container) -> Mapping:
 def _read_rig(container: Container) -> Rig:
     if container.has(RIG_FILE):
         return read_rig_of(container)
-    if isinstance(container, Files):
-        raise RecordingSetError(container.path.name, "a single file has no rig; name one with --rig rig.toml")
     message = (
         'is not there; write one with at least: name = "...", or name a rig file of your own. For files of another '
         "bench `friction-bench import --guess` writes it, and POST /recording-sets/guess"

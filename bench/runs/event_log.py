@@ -22,6 +22,8 @@ VARIABLE = "FRICTION_BENCH_LOG"
 STDERR = "-"
 SERVERS = ("uvicorn",)  # loggers that pass nothing on
 _log = logging.getLogger("bench.events")
+# where no log is written, nothing is: logging would print the bare name of a warning to the terminal
+_log.addHandler(logging.NullHandler())
 
 
 class JsonLine(logging.Formatter):
@@ -65,7 +67,7 @@ def begin_as_chosen() -> None:
         try:
             begin(target)
         except ConfigurationError as error:
-            _log.warning("%s", error)
+            logging.getLogger(__name__).warning("%s", error)
 
 
 def note(event: str, level: int = logging.INFO, **facts: Any) -> None:

@@ -47,10 +47,11 @@ def scope_of(configuration: BenchConfiguration, drive: Description) -> tuple[Sco
 
 def _scopes(configuration: BenchConfiguration, drive: Description) -> Iterator[Scope]:
     effort = _effort(configuration, drive)
-    yield _compensation(drive, effort)
+    no_effort = "" if effort else _no_effort(drive)
+    yield _compensation(drive, effort, no_effort)
     yield _at_rest(drive)
-    yield _in_motion(configuration, effort)
-    yield _weight(configuration, effort)
+    yield _in_motion(configuration, no_effort)
+    yield _weight(configuration, no_effort)
     yield _round_the_motor(configuration)
     yield _free_play(configuration, drive)
     yield _temperature(drive)
@@ -69,8 +70,28 @@ def _effort(configuration: BenchConfiguration, drive: Description) -> str:
     return "duty, speed and the rig's motor constants, paper, eq. (3)" if known else ""
 
 
-def _compensation(drive: Description, effort: str) -> Scope:
+def _no_effort(drive: Description) -> str:
+    """Why nothing tells the effort, and what to do."""
+    if drive.untold is not None and drive.untold.tells:
+        return f"nothing tells its effort: {drive.untold.remedy}"
+    if "duty" not in drive.measured:
+        return "nothing tells its effort: the drive measures neither current nor torque nor duty"
+    return "nothing tells its effort; add motor constants and supply to the rig"
+
+
+def _no_push(drive: Description) -> str:
+    """Why the drive cannot be asked for an effort, and what to do; "" where it can."""
+    if not closes_positions_alone(drive):
+        return ""
+    if drive.untold is not None and drive.untold.takes:
+        return f"it takes positions alone as it is set up now: {drive.untold.remedy}"
+    return "it takes positions alone"
+
+
+def _compensation(drive: Description, effort: str, no_effort: str) -> Scope:
     what = "friction taken off what the joint is asked for, and off what it tells"
+    if closes_positions_alone(drive) and drive.untold is not None and drive.untold.takes:
+        return Scope(what, Answer.NO, _no_push(drive))
     if closes_positions_alone(drive):
         return Scope(
             what,
@@ -78,22 +99,22 @@ def _compensation(drive: Description, effort: str) -> Scope:
             "it takes positions alone: nothing can be added to its effort. Its friction can be known, from what it "
             "reports while it moves, and not be taken away",
         )
-    if not effort:
-        return Scope(what, Answer.NO, "nothing tells its effort; add motor constants and supply to the rig")
+    if no_effort:
+        return Scope(what, Answer.NO, no_effort)
     return Scope(what, Answer.YES, f"by {effort}")
 
 
 def _at_rest(drive: Description) -> Scope:
     what = "friction at rest (breakaway)"
     if closes_positions_alone(drive):
-        return Scope(what, Answer.NO, "a push of known size is wanted, and it takes positions alone")
+        return Scope(what, Answer.NO, f"a push of known size is wanted, and {_no_push(drive)}")
     return Scope(what, Answer.YES, "by pushes that rise until it moves")
 
 
-def _in_motion(configuration: BenchConfiguration, effort: str) -> Scope:
+def _in_motion(configuration: BenchConfiguration, no_effort: str) -> Scope:
     what = "friction in motion"
-    if not effort:
-        return Scope(what, Answer.NO, "nothing tells its effort; add motor constants and supply to the rig")
+    if no_effort:
+        return Scope(what, Answer.NO, no_effort)
     reach_rad_s, highest_rad_s = _reach_rad_s(configuration), configuration.limits.speed_rad_s
     if reach_rad_s >= highest_rad_s:
         return Scope(what, Answer.YES, f"up to the highest speed that is allowed, {highest_rad_s:.3g} rad/s")
@@ -105,10 +126,10 @@ def _in_motion(configuration: BenchConfiguration, effort: str) -> Scope:
     )
 
 
-def _weight(configuration: BenchConfiguration, effort: str) -> Scope:
+def _weight(configuration: BenchConfiguration, no_effort: str) -> Scope:
     what = "weight of arm and load, told from a constant torque"
-    if not effort:
-        return Scope(what, Answer.NO, "nothing tells its effort")
+    if no_effort:
+        return Scope(what, Answer.NO, no_effort)
     swing = _swing(configuration.limits.position_min_rad, configuration.limits.position_max_rad)
     if swing >= _LEAST_SWING:
         return Scope(what, Answer.YES, f"the lever changes by {swing:.0%} of its length over the travel")
@@ -136,7 +157,7 @@ def _free_play(configuration: BenchConfiguration, drive: Description) -> Scope:
     what = "free play of the gear"
     step_rad, play_rad = drive.resolution.get("position_rad"), configuration.rig.gear.backlash_rad
     if closes_positions_alone(drive):
-        return Scope(what, Answer.NO, "it is found by pushes to and fro, and it takes positions alone")
+        return Scope(what, Answer.NO, f"it is found by pushes to and fro, and {_no_push(drive)}")
     if play_rad is None or step_rad is None or not isfinite(step_rad):
         return Scope(what, Answer.YES, "from one step of the position on; the rig says nothing of its size")
     if play_rad < _LEAST_STEPS * step_rad:

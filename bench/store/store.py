@@ -74,6 +74,11 @@ class Store(ExperimentStore, TrialStore, StudyStore):
             raise
         return store
 
+    @property
+    def where(self) -> str:
+        """The file, or the server's address without its password."""
+        return self._database.where
+
     def close(self) -> None:
         """Close the database. What this store left running is marked interrupted. Safe to call twice."""
         self.custody.close()

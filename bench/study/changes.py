@@ -2,16 +2,20 @@
 
 from bench.store import Store
 from bench.store.records import ModelRow
+from bench.study.compare import fitted_parameters
 from bench.study.errors import StudyError, lab_errors
 from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import Material, load, model_of
 from bench.study.models.change import BeforeAfter, BreakawayChange, Changed
+from bench.study.models.comparison import FittedParameter
 from bench.study.models.stages import CHANGE, FITTING, JUDGING
 from compensator.lab import progress
-from compensator.lab.at_rest.breakaway_comparison import held_out_both
+from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates, compare_breakaway, held_out_both
 from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, held_out_gain
 from compensator.lab.model.held_out_error import HeldOut
+from compensator.lab.model.intervals import ParameterEstimate, estimates
 from compensator.lab.model.validation import held_out
 
 
@@ -50,6 +54,7 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     progress.enter(FITTING)
     fit = material.fit(effects)
     # a change is judged on the rows where the changed effect lives; the ladder, on those that the study counts
+    added = set(effects) - set(parent.effects)
     changed = [effect_named(name) for name in set(effects) ^ set(parent.effects)]
     rows = material.dataset.choice_for(changed)
     old = material.fit_of(parent, beside=effects)
@@ -77,12 +82,22 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
         gain=gain.value,
         gain_low=gain.low,
         gain_high=gain.high,
-        breakaway=None if starts is None else _changed(*starts),
+        parameters=_of_added(estimates(fit), added),
+        breakaway=None if starts is None else _changed(*starts, _of_added(_at_breakaway(fit), added)),
         sentence=sentence.strip(),
     )
 
 
-def _changed(before: HeldOut, after: HeldOut) -> BreakawayChange:
+def _at_breakaway(fit: Fit) -> list[ParameterEstimate]:
+    compared = compare_breakaway(fit)
+    return [] if compared is None else breakaway_estimates(compared.fit)
+
+
+def _of_added(found: list[ParameterEstimate], added: set[str]) -> list[FittedParameter]:
+    return fitted_parameters([one for one in found if one.effect in added])
+
+
+def _changed(before: HeldOut, after: HeldOut, parameters: list[FittedParameter]) -> BreakawayChange:
     gain = held_out_gain(before, after)
     return BreakawayChange(
         held_out_before=before.relative,
@@ -90,6 +105,7 @@ def _changed(before: HeldOut, after: HeldOut) -> BreakawayChange:
         gain=gain.value,
         gain_low=gain.low,
         gain_high=gain.high,
+        parameters=parameters,
     )
 
 

@@ -55,7 +55,7 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> Compari
         study_id=study_id,
         model_id=model.id,
         effects=model.effects,
-        parameters=_parameters(parameters),
+        parameters=fitted_parameters(parameters),
         effort=material.effort,
         error=Errors(
             training=_error(found.training),
@@ -118,11 +118,12 @@ def _breakaway(found: comparison.Comparison) -> BreakawayError | None:
         starts=one.starts,
         training=Error(rms=one.rms, relative=one.relative),
         held_out=_held_out(one.held_out),
-        parameters=_parameters(breakaway_estimates(one.fit)),
+        parameters=fitted_parameters(breakaway_estimates(one.fit)),
     )
 
 
-def _parameters(found: list[ParameterEstimate]) -> list[FittedParameter]:
+def fitted_parameters(found: list[ParameterEstimate]) -> list[FittedParameter]:
+    """Estimates as an answer has them."""
     return [
         FittedParameter(
             effect=one.effect,

@@ -12,7 +12,7 @@ from drivers.canopen.cia402.profiles import ObjectProfile, choose_profile
 from drivers.canopen.cia402.scale import DriveScale
 from drivers.canopen.identity import Identity
 from drivers.canopen.settings import CanopenSettings
-from drivers.contract import Mode
+from drivers.contract import Mode, Untold
 from drivers.joint import JointScale
 
 _MEASURED = "measured"
@@ -33,6 +33,7 @@ class Capabilities:
         units: by the drive and by the configuration.
         told_counts: encoder counts of a motor turn, by the drive; NaN where it tells none.
         no_homing: why it does not home by itself; "" where it does.
+        untold: what is to be set for want of the rated current; None where that is known, or would not help.
     """
 
     identity: Identity
@@ -44,6 +45,7 @@ class Capabilities:
     units: tuple[UnitRow, ...]
     told_counts: float
     no_homing: str
+    untold: Untold | None
 
 
 def probe(table: ObjectTable, settings: CanopenSettings, joint: JointScale, identity: Identity) -> Capabilities:
@@ -61,9 +63,20 @@ def probe(table: ObjectTable, settings: CanopenSettings, joint: JointScale, iden
     present = frozenset(item for item in asked if table.has(item, _MEASURED))
     current = next((item for item in (profile.current, TORQUE) if item in present and scale.tells(item)), None)
     rows = (*units.rows, UnitRow("motor current of 1000 permille torque in A", _told(table, profile), rated_a))
-    modes = ModeChoice(table, settings, scale).choose()
+    choice = ModeChoice(table, settings, scale)
+    modes = choice.choose()
+    tells = current is None and any(item in present for item in (profile.current, TORQUE))
     no_homing = why_not(table, scale, VELOCITY in present) if settings.homing else "no way of homing was configured"
-    return Capabilities(identity, profile, present, current, modes, scale, rows, units.told_counts, no_homing)
+    untold = _untold(tells, choice.lacks_rated_current)
+    return Capabilities(identity, profile, present, current, modes, scale, rows, units.told_counts, no_homing, untold)
+
+
+def _untold(tells: bool, takes: bool) -> Untold | None:
+    remedy = (
+        "the drive does not tell its motor rated current; set rated_current_a in [drive] to it [A], by the drive's own "
+        "tool or data sheet"
+    )
+    return Untold(remedy, tells, takes) if tells or takes else None
 
 
 def _rated_current_a(table: ObjectTable, settings: CanopenSettings, profile: ObjectProfile) -> float:

@@ -24,6 +24,11 @@ def test_from_trials_to_an_error_that_falls(command, tmp_path):
     added = json.loads(command("study", "add", study, best, "--json").stdout)
     assert added["after"]["held_out"] < added["before"]["held_out"]
     assert f"+ {best}" in command("study", "ladder", study).stdout
+    again = command("study", "add", study, best, "--model", added["parent_id"])
+    value = added["parameters"][0]
+    assert value["low"] < value["value"] < value["high"]
+    for words in ("Its parameters", value["name"], f"{value['value']:.4g}"[:5], value["unit"]):
+        assert words in again.stdout
     dropped = json.loads(command("study", "drop", study, best, "--json").stdout)
     assert best not in dropped["effects"]
     report = command("study", "report", study, "--html", "study.html", "--no-suggest")

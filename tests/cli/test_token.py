@@ -25,6 +25,17 @@ def test_a_token_from_its_making_to_its_end(command, tmp_path):
     assert "revoked already" in again.stderr
 
 
+def test_the_store_is_named(command, tmp_path):
+    file = str(tmp_path / "friction-bench.sqlite")
+    made = command("token", "new", "ada")
+    assert len(made.stdout.strip()) == 43  # a shell takes it from there
+    assert file in made.stderr
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    listed = command("--store", elsewhere / "other.sqlite", "token", "list")
+    assert str(elsewhere / "other.sqlite") in listed.stdout.replace("\n", "")
+
+
 def test_names_are_never_given_twice(command):
     assert command("token", "new", "ada").exit_code == 0
     twice = command("token", "new", "ada")

@@ -168,6 +168,22 @@ def test_a_single_table_asks_for_a_rig(tmp_path: Path) -> None:
         read_recording_set(folder / "run.csv")
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("# My recordings\n\nThey are of the arm, taken in May.\n", "is the only column; wanted a table"),
+        ("Notes, of today\nall was well\n", "column 'Notes': is no known channel"),
+        (GOOD + "1.5,0.4\n", "line 5: found 2 cells"),
+    ],
+)
+def test_a_single_file_that_is_no_recording_says_so_before_a_rig_is_asked_for(
+    tmp_path: Path, text: str, words: str
+) -> None:
+    folder = write_set(tmp_path / "set", {"readme.csv": text})
+    with pytest.raises(RecordingSetError, match=words):
+        read_recording_set(folder / "readme.csv")
+
+
 def test_a_load_of_the_mapping_is_checked_too(tmp_path: Path) -> None:
     folder = write_set(tmp_path / "set", {"run.csv": GOOD})
     mapping = Mapping(trials=[MappedTrial(file="run.csv", conditions={"load_kg": "heavy"})])

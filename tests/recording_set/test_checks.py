@@ -47,6 +47,68 @@ def test_what_can_be_comes_in(tmp_path: Path) -> None:
     assert len(read_recording_set(turning).recordings[0]) == len(TIME_S)
 
 
+RIG = """name = "arm"
+motor = { torque_constant_n_m_a = 0.05, resistance_ohm = 8 }
+gear = { ratio = 20 }
+arm = { length_m = 0.3 }
+"""
+VOLTAGE = {"current_a": None, "duty": 0.5 * CURRENT_A, "supply_v": 12.0 * CONSTANT}
+
+
+def loaded_set(tmp_path: Path, load_kg: float, more: str = "", **changes: np.ndarray | None) -> Path:
+    folder = set_of(tmp_path, **changes)
+    titles, values = (",balanced", ",true") if more == "balanced" else ("", "")
+    (folder / "trials.csv").write_text(f"file,load_kg{titles}\nrun.csv,{load_kg}{values}\n", encoding="utf-8")
+    (folder / "rig.toml").write_text(("horizontal = true\n" if more == "horizontal" else "") + RIG, encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize("changes", [{}, VOLTAGE, {"current_a": None, "torque_n_m": CURRENT_A}])
+def test_a_load_that_no_effort_carries_is_asked_about(tmp_path: Path, changes: dict[str, np.ndarray | None]) -> None:
+    with pytest.raises(RecordingSetError, match=r"load_kg is 300 kg.*Is it in g"):
+        read_recording_set(loaded_set(tmp_path, 300.0, **changes))
+    grams = Mapping(trials_columns={"load_kg": {"from": "load_kg", "scale": 0.001}})
+    assert read_recording_set(tmp_path / "set", grams).recordings[0].conditions["load_kg"] == pytest.approx(0.3)
+    sure = Mapping(trials_columns={"load_kg": {"from": "load_kg"}})
+    assert read_recording_set(tmp_path / "set", sure).recordings[0].conditions["load_kg"] == 300.0
+
+
+def test_a_load_that_a_mapping_tells_is_asked_about_too(tmp_path: Path) -> None:
+    folder = set_of(tmp_path)
+    (folder / "rig.toml").write_text(RIG, encoding="utf-8")
+    told = {"trials": [{"file": "run.csv", "conditions": {"load_kg": 300.0}}]}
+    with pytest.raises(RecordingSetError, match=r"Correct it in \[\[trials\]\]"):
+        read_recording_set(folder, Mapping.model_validate(told))
+    sure = Mapping.model_validate(told | {"trials_columns": {"load_kg": {"from": "load_kg"}}})
+    assert read_recording_set(folder, sure).recordings[0].conditions["load_kg"] == 300.0
+
+
+@pytest.mark.parametrize(
+    ("load_kg", "more", "changes"),
+    [
+        (0.3, "", {}),
+        (3.0, "", {}),  # a spring may carry most of it
+        (300.0, "balanced", {}),
+        (300.0, "horizontal", {}),
+        (300.0, "", {"position_rad": 1e-3 * POSITION_RAD}),  # it hardly moves: a brake may hold it
+    ],
+)
+def test_a_load_that_may_be_is_taken(
+    tmp_path: Path, load_kg: float, more: str, changes: dict[str, np.ndarray | None]
+) -> None:
+    folder = loaded_set(tmp_path, load_kg, more, **changes)
+    assert read_recording_set(folder).recordings[0].conditions["load_kg"] == load_kg
+
+
+def test_trials_that_do_not_tell_their_load_are_noted(tmp_path: Path) -> None:
+    assert [note for note in read_recording_set(set_of(tmp_path)).notes if "no trial tells load_kg" in note]
+    loaded = loaded_set(tmp_path, 0.3)
+    assert read_recording_set(loaded).notes == ()
+    (loaded / "second.csv").write_bytes((loaded / "run.csv").read_bytes())
+    (loaded / "trials.csv").write_text("file,load_kg\nrun.csv,0.3\nsecond.csv,\n", encoding="utf-8")
+    assert "1 of 2 trials do not tell load_kg" in read_recording_set(loaded).notes[0]
+
+
 def test_a_unit_that_is_stated_confirms_a_value(tmp_path: Path) -> None:
     folder = set_of(tmp_path, position_rad=np.degrees(POSITION_RAD))
     for unit, factor in (("rad", 1.0), ("deg", np.pi / 180.0)):

@@ -94,6 +94,18 @@ def test_an_infinite_time_is_refused_by_its_file(tmp_path):
         read_unknown([path], Rig(name="endless"), Known({}))
 
 
+def test_a_question_names_the_files_that_it_is_about(tmp_path: Path) -> None:
+    degrees = next(one.data for one in FILES.values() if one.asks == "goes back and forth")
+    folder = tmp_path / "arm"
+    folder.mkdir()
+    for number, place in enumerate((r"arm/a\.csv", r"arm/a\.csv and arm/b\.csv", r"arm/a\.csv and 2 more")):
+        (folder / f"{'abc'[number]}.csv").write_bytes(degrees)
+        with pytest.raises(RecordingSetError, match=rf"^{place}: .* goes back and forth"):
+            read_unknown([folder], None, Known({}))
+    with pytest.raises(RecordingSetError, match=r"^b\.csv: .* goes back and forth"):
+        read_unknown([folder / "b.csv"], None, Known({}))
+
+
 def test_numbers_beyond_any_clock_are_no_time(tmp_path: Path) -> None:
     path = tmp_path / "large.csv"
     rows = [f"{(-1) ** i * 1.7e308 * (0.5 + i / 80)!r},{0.01 * i:g},0.5" for i in range(40)]

@@ -44,6 +44,19 @@ def test_what_went_wrong_is_an_error_with_its_reason(tmp_path):
     assert last["reason"]
 
 
+def test_without_a_log_nothing_is_printed(tmp_path):
+    said = "import logging; from bench.runs import event_log; event_log.note('request', logging.WARNING, status=401)"
+    ended = subprocess.run([sys.executable, "-c", said], check=True, capture_output=True, text=True)
+    assert (ended.stdout, ended.stderr) == ("", "")
+
+
+def test_a_process_that_cannot_write_the_chosen_log_says_so(tmp_path):
+    begun = "from bench.runs import event_log; event_log.begin_as_chosen()"
+    environment = os.environ | {event_log.VARIABLE: str(tmp_path / "none" / "bench.log")}
+    ended = subprocess.run([sys.executable, "-c", begun], check=True, capture_output=True, text=True, env=environment)
+    assert "choose another file with --log" in ended.stderr
+
+
 def test_a_file_that_cannot_be_written_is_refused(tmp_path):
     with pytest.raises(ConfigurationError, match="No such file or directory; choose another file with --log"):
         event_log.begin(str(tmp_path / "none" / "bench.log"))

@@ -1,12 +1,13 @@
 """What can be compensated, by drive, travel and rig: each rule on a joint where it bites, and where it does not."""
 
+from dataclasses import replace
 from math import asin, nan
 
 import pytest
 
 from bench.config.configuration import default_configuration, parse_configuration
 from bench.runs.scope import Answer, scope_of
-from drivers.contract import Description, Mode
+from drivers.contract import Description, Mode, Untold
 
 
 def drive(modes=(Mode.DUTY,), measured=("position_rad", "duty", "supply_v", "temperature_c"), step_rad=7.67e-5):
@@ -49,6 +50,22 @@ def test_firmware_that_takes_positions_alone_can_be_known_and_not_compensated():
 def test_where_nothing_tells_the_effort_nothing_is_known():
     found = answers(found=drive(modes=(Mode.POSITION,), measured=("position_rad",)))
     assert {found[name].answer for name in (COMPENSATION, "friction in motion", WEIGHT)} == {Answer.NO}
+    assert "neither current nor torque nor duty" in found["friction in motion"].why  # motor constants would not help
+
+
+def test_what_the_drive_lacks_is_named_in_every_row_that_it_would_open():
+    untold = Untold("set rated_current_a in [drive]", tells=True, takes=True)
+    found = answers(found=replace(drive(modes=(Mode.POSITION,), measured=("position_rad",)), untold=untold))
+    rows = (COMPENSATION, "friction at rest", "friction in motion", WEIGHT, "free play of the gear")
+    assert [name for name in rows if untold.remedy not in found[name].why] == []
+    assert "nothing can be added" not in found[COMPENSATION].why
+
+
+def test_a_drive_that_takes_positions_alone_says_so_whatever_would_let_it_tell_its_current():
+    untold = Untold("set rated_current_a in [drive]", tells=True, takes=False)
+    found = answers(found=replace(drive(modes=(Mode.POSITION,), measured=("position_rad",)), untold=untold))
+    assert "nothing can be added to its effort" in found[COMPENSATION].why
+    assert untold.remedy in found["friction in motion"].why
 
 
 @pytest.mark.parametrize(

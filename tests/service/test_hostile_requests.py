@@ -38,6 +38,22 @@ def test_a_body_that_is_no_json_is_told_where(service):
     assert "the body is no JSON: Expecting value, at character 1" in answer.json()["detail"]
 
 
+@pytest.mark.parametrize("sent", [{}, {"Content-Type": "application/x-www-form-urlencoded"}])
+def test_a_body_that_is_not_called_json_names_the_header(service, sent):
+    answer = service.client.post("/experiments", content=b'{"kind": "steps"}', headers=sent)
+    assert answer.status_code == 422
+    assert "send 'Content-Type: application/json'" in answer.json()["detail"]
+    assert (sent.get("Content-Type") or "no Content-Type") in answer.json()["detail"]
+
+
+@pytest.mark.parametrize(("method", "path", "status"), [("GET", "/nothing", 404), ("PUT", "/stop", 405)])
+def test_a_route_that_is_none_leads_to_those_there_are(service, method, path, status):
+    answer = service.client.request(method, path)
+    assert answer.status_code == status
+    assert f"there is no {method} /api/v1{path}; GET /api/v1/openapi.json" in answer.json()["detail"]
+    assert service.stranger.get("/openapi.json").status_code == 200
+
+
 def test_a_body_in_another_encoding_is_a_problem(service):
     for sent in (b'{"kind": "\xff"}', '{"kind": "st\u00e9ps"}'.encode("latin-1"), '{"kind": "steps"}'.encode("cp037")):
         answer = service.client.post("/experiments", content=sent, headers={"Content-Type": "application/json"})

@@ -50,6 +50,9 @@ def test_the_hidden_effect_is_named_added_and_helps(story):
     assert story["add"].gain_low > 0
     assert "It helps: keep it." in story["add"].sentence
     assert "It harms: drop it." in story["drop"].sentence
+    whole = story["compare after"].parameters
+    assert story["add"].parameters == [one for one in whole if one.effect == "viscous_asymmetry"] != []
+    assert story["drop"].parameters == []
     after = story["diagnose after"]
     assert after.verdict == "nothing"
     assert after.classes == []

@@ -55,6 +55,10 @@ def test_parameters_of_breakaway_are_those_of_the_joint(told):
     assert static.low < static.value < static.high
     assert static.unit == "N m"
     assert ("rate_dependent_breakaway", "fall of static friction") in found
+    own = [one for one in told["after"].breakaway.parameters if one.effect == "rate_dependent_breakaway"]
+    assert [str(one) for one in told["changed"].breakaway.parameters] == [str(one) for one in own]  # no nan is one
+    assert len(own) == 2
+    assert told["other"].breakaway is None
     assert ("rate_dependent_breakaway", "rate that makes half the fall") in found
 
 

@@ -188,6 +188,10 @@ def change(found: "Changed") -> None:
         ("held out", percent(found.before.held_out), percent(found.after.held_out)),
     ]
     table(f"Model {found.model_id}", ["error on", "before#", "after#"], rows)
+    if found.parameters:
+        _parameters("Its parameters, 95 % intervals", found.parameters)
+    if found.breakaway and found.breakaway.parameters:
+        _parameters("Its parameters in breakaway, 95 % intervals", found.breakaway.parameters)
 
 
 def ladder(found: "Ladder") -> None:

@@ -8,7 +8,7 @@ import typer
 
 from bench.cli.audit_note import note
 from bench.cli.bench_session import session_of
-from bench.cli.output import Json, print_json, say, table
+from bench.cli.output import Json, print_json, remark, say, table
 
 app = typer.Typer(no_args_is_help=True)
 Name = Annotated[str, typer.Argument(help="Of the person or the program that gets it; never given twice.")]
@@ -48,11 +48,13 @@ def new(
     expires_utc = None if expires_days is None else now() + timedelta(days=expires_days)
     with session_of(context).open_store() as store:
         store.access.tokens.add(name, role, digest_of(made), expires_utc)
+        where = store.where
         note(store, f"token new {name}", f"made token '{name}' with the role {role}")
     if as_json:
         print_json({"name": name, "role": str(role), "expires_utc": expires_utc, "token": made})
         return
     say(made)
+    remark(f"opens services on the store {where}")
 
 
 @app.command("list")
@@ -61,7 +63,7 @@ def list_(context: typer.Context, as_json: Json = False) -> None:
     from bench.store.tables.experiments import now
 
     with session_of(context).open_store() as store:
-        found = store.access.tokens.find()
+        found, where = store.access.tokens.find(), store.where
     rows = [
         {
             "name": one.name, "role": one.role, "created_utc": one.created_utc, "expires_utc": one.expires_utc,
@@ -73,7 +75,11 @@ def list_(context: typer.Context, as_json: Json = False) -> None:
         print_json(rows)
         return
     columns = ["name", "role", "made", "expires", "revoked", "valid"]
-    table("Tokens", columns, [[*list(row.values())[:-1], "yes" if row["valid"] else "no"] for row in rows])
+    table(
+        f"Tokens of the store {where}",
+        columns,
+        [[*list(row.values())[:-1], "yes" if row["valid"] else "no"] for row in rows],
+    )
 
 
 @app.command()

@@ -108,11 +108,10 @@ def import_(
 def _guess(paths: list[Path], rig: "Rig | None", known: "Known", mapping_file: Path) -> None:
     """Show what the columns are taken for; write mapping and rig where nothing is left to be asked."""
     from bench.recording_set.guess import check_answered, guess_of
-    from bench.recording_set.read import name_of_set
 
     found, assumed, notes = guess_of(paths, rig, known)
     show(found, notes)
-    check_answered(found, name_of_set(paths))
+    check_answered(found)
     rig_file = mapping_file.with_name("rig.toml")
     needs_rig = rig is None and not (paths[0] / "rig.toml").exists()
     write_guess(found, assumed if needs_rig else None, mapping_file, rig_file)

@@ -63,6 +63,7 @@ class Guess:
         questions: what a person has to say first; each names its option.
         notes: what was found besides.
         files: that hold a trial each.
+        places: of the files that were looked at, as their user knows them.
     """
 
     mapping: Mapping
@@ -71,6 +72,7 @@ class Guess:
     questions: tuple[str, ...]
     notes: tuple[str, ...]
     files: tuple[str, ...] = ()
+    places: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -123,7 +125,8 @@ def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
     missing = _missing(assigned, known, rate_hz)
     questions = (*assigned.questions, *units.questions, *unsigned, *missing, *_other_columns(sheets, assigned))
     joint: Literal["rotary", "linear"] = "linear" if units.joint == "linear" else "rotary"
-    return Guess(mapping, joint, taken, questions, tuple(notes), tuple(sheet.file for sheet in sheets))
+    files, places = tuple(sheet.file for sheet in sheets), tuple(sheet.place for sheet in sheets)
+    return Guess(mapping, joint, taken, questions, tuple(notes), files, places)
 
 
 def _other_columns(sheets: Sequence[Sheet], assigned: Assigned) -> list[str]:

@@ -60,18 +60,20 @@ def read_unknown(
         assumed = Rig(name=name_of_set(paths), joint="linear" if linear else "rotary")
         return read_recording_set(paths, mapping, rig or _own_rig(paths) or assumed), None
     guess, rig, _ = guess_of(paths, rig, known)
-    check_answered(guess, name_of_set(paths))
+    check_answered(guess)
     return read_recording_set(paths, guess.mapping, rig), guess
 
 
-def check_answered(guess: Guess, name: str) -> None:
-    """Refuse a guess that leaves questions.
+def check_answered(guess: Guess) -> None:
+    """Refuse a guess that leaves questions, which are of all its files together.
 
     Raises:
         RecordingSetError: names every question and the option that answers it.
     """
     if not guess.questions:
         return
+    first, *others = guess.places
+    name = f"{first} and {len(others)} more" if len(others) > 1 else " and ".join(guess.places)
     if len(guess.questions) == 1:
         raise RecordingSetError(name, guess.questions[0])
     listed = "".join(f"\n- {question}" for question in guess.questions)

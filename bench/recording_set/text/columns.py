@@ -99,6 +99,9 @@ def _check_known(table: Headed, mapping: Mapping) -> None:
         entry = json.dumps(sign)
         message = f"is the only column; is the delimiter another sign? Then say so in a mapping: delimiter = {entry}"
         raise table.error(message, table.header_line, first)
+    if len(table.header) == 1:
+        message = "is the only column; wanted a table of a time, a position and what drives it. Is this a recording?"
+        raise table.error(message, table.header_line, first)
     parts = ["is no known channel", *filter(None, [suggestion(first)])]
     if len(unknown) > 1:
         parts.append(f"Not known either: {', '.join(unknown[1:])}")

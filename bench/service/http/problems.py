@@ -186,7 +186,7 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(RequestValidationError)
     async def invalid_request(request: Request, error: RequestValidationError) -> JSONResponse:
-        if (no_json := _no_json(error)) is not None:
+        if (no_json := _no_json(request, error)) is not None:
             return problem_response(422, no_json, kind="ValidationError")
         return _invalid(field_problems(error, model=_body_model(request)))
 
@@ -195,11 +195,11 @@ def install(app: FastAPI) -> None:
         return _invalid(field_problems(error))
 
     @app.exception_handler(HTTPException)
-    async def http(_request: Request, error: HTTPException) -> JSONResponse:
+    async def http(request: Request, error: HTTPException) -> JSONResponse:
         if error.status_code == 400:  # FastAPI's word for a body that is no text
             return problem_response(422, "the body is no JSON: it is not in UTF-8", kind="ValidationError")
         headers = dict(error.headers) if error.headers else None
-        return problem_response(error.status_code, str(error.detail), headers=headers)
+        return problem_response(error.status_code, _detail(request, error), headers=headers)
 
 
 def _body_model(request: Request) -> type[BaseModel] | None:
@@ -208,12 +208,29 @@ def _body_model(request: Request) -> type[BaseModel] | None:
     return None if field is None else next(models_in(field.field_info.annotation), None)
 
 
-def _no_json(error: RequestValidationError) -> str | None:
-    """What is wrong with a body that is no JSON; None where it is."""
+def _detail(request: Request, error: HTTPException) -> str:
+    """What a route says; of a route that there is not, which there are."""
+    if error.detail != HTTPStatus(error.status_code).phrase:
+        return str(error.detail)
+    path = request.url.path[:LONGEST_FOUND]
+    return f"there is no {request.method} {path}; GET {request.app.openapi_url} lists every route"
+
+
+def _no_json(request: Request, error: RequestValidationError) -> str | None:
+    """What is wrong with a body that is no JSON, or is not said to be; None where it is."""
     for detail in error.errors():
         if detail["type"] == "json_invalid":
             return f"the body is no JSON: {detail['ctx']['error']}, at character {detail['loc'][-1]}"
+        if detail["loc"] == ("body",) and isinstance(detail["input"], bytes):  # handed on as it came
+            return _no_json_type(request)
     return None
+
+
+def _no_json_type(request: Request) -> str:
+    """What is wrong with a body that was not read as JSON, since its header does not say that it is."""
+    found = request.headers.get("content-type")
+    said = "there is no Content-Type" if found is None else f"Content-Type is {found[:LONGEST_FOUND]!r}"
+    return f"the body is not read as JSON: {said}; send 'Content-Type: application/json'"
 
 
 def _invalid(errors: list[FieldProblem]) -> JSONResponse:

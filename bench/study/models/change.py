@@ -6,6 +6,7 @@ from pydantic import Field
 
 from bench.json_types import Number
 from bench.study.models.base import StudyModel
+from bench.study.models.comparison import FittedParameter
 
 
 class BeforeAfter(StudyModel):
@@ -23,6 +24,9 @@ class BreakawayChange(StudyModel):
     gain: Number
     gain_low: Number
     gain_high: Number
+    parameters: list[FittedParameter] = Field(
+        description="of the added effect in breakaway; empty where it was dropped"
+    )
 
 
 class Changed(StudyModel):
@@ -36,6 +40,7 @@ class Changed(StudyModel):
     gain: Number
     gain_low: Number
     gain_high: Number
+    parameters: list[FittedParameter] = Field(description="of the added effect in sliding; empty where it was dropped")
     breakaway: BreakawayChange | None = Field(description="null: no effect of breakaway, or too few starts from rest")
     sentence: str
 

@@ -56,7 +56,8 @@ def suggest(
     if facts_of(configuration.rig) != material.definition.facts:
         raise StudyError(
             f"study {study_id} is of another rig than this bench, '{configuration.rig.name}'; name the configuration "
-            "of its bench with --config"
+            "of its bench with --config. Of recordings that were imported from elsewhere, "
+            f"'friction-bench study coverage {study_id}' says under 'What would help' what to record next"
         )
     configuration = with_friction(store, configuration)
     progress.enter(FITTING)

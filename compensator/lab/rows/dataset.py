@@ -378,10 +378,13 @@ class Dataset:
             if not all(channel in trial.signals.recording.channels for trial in self.trials):
                 raise NotApplicableError(f"{effect.name} needs channel {channel} in every trial; record it")
         if effect.varies_with and not self._varies(effect.varies_with):
-            raise NotApplicableError(
-                f"{effect.name} needs {effect.varies_with} to differ over the data, and it does not; "
-                f"record {effect.excited_by}"
-            )
+            lacks = f"no trial tells it; put it into trials.csv where it was known, or record {effect.excited_by}"
+            if effect.varies_with != "load_kg" or self._is_told("load_kg"):
+                lacks = f"it does not; record {effect.excited_by}"
+            raise NotApplicableError(f"{effect.name} needs {effect.varies_with} to differ over the data, and {lacks}")
+
+    def _is_told(self, condition: str) -> bool:
+        return any(condition in trial.signals.recording.conditions for trial in self.trials)
 
     def _varies(self, quantity: str) -> bool:
         if quantity == "temperature_c":

@@ -66,6 +66,7 @@ class ModeChoice:
         self._settings = settings
         self._scale = scale
         self._listed = table.ask(SUPPORTED_MODES, _PURPOSE)
+        self.lacks_rated_current = False  # a torque mode is there, and only its unit keeps it from being used
 
     def choose(self) -> dict[Mode, int]:
         """The code of 0x6060 for each mode of the contract that the drive can do."""
@@ -92,6 +93,7 @@ class ModeChoice:
         if not self._table.has(TARGETS[code], _PURPOSE):
             return f"no {TARGETS[code]}"
         if code in _CURRENT and isnan(self._scale.rated_current_a):
+            self.lacks_rated_current = True
             return "what 1000 permille of torque are in A is told by neither drive nor rated_current_a"
         if code in _POSITION["velocity"] and isnan(self._scale.velocity_unit_rad_s):
             return "its unit of velocity is told by neither drive nor velocity_unit"

@@ -7,8 +7,8 @@ from drivers.canopen.cia301.objects import POSITION
 from drivers.contract import Mode, Watchdog
 from drivers.errors import WatchdogError
 from sim_backend.devices.canopen.conduct import Conduct
-from tests.drivers.dictionaries.attempt import PERIOD_S, attempt, device, host
-from tests.drivers.dictionaries.traits import TRAITS
+from tests.drivers.dictionaries.attempt import PERIOD_S, RATED_A, attempt, device, host
+from tests.drivers.dictionaries.traits import TRAITS, Trait
 
 pytestmark = pytest.mark.virtual_time
 MANNERS = {
@@ -38,6 +38,27 @@ def test_a_drive_with_these_manners_runs(name, tmp_path) -> None:
     result = attempt(trait.write(tmp_path, name), MANNERS[name])
     assert result.is_right, result
     assert not result.is_safety
+
+
+@pytest.mark.parametrize(
+    ("name", "without", "takes"), [("torque mode", (), True), ("positions alone", (0x6071,), False)]
+)
+def test_a_drive_that_does_not_tell_its_rated_current_asks_for_it(name, without, takes, tmp_path) -> None:
+    unrated = Trait(without=(0x6075, 0x6076, 0x6078, *without))
+    with device(unrated.write(tmp_path, name.replace(" ", "-"))) as running:
+        with host(running) as drive:
+            drive.open(PERIOD_S)
+            found = drive.describe()
+            assert found.modes == {Mode.POSITION}
+            assert found.untold is not None
+            assert (found.untold.tells, found.untold.takes) == (True, takes)
+            assert [note for note in found.notes if "set rated_current_a in [drive]" in note]
+        with host(running, rated_current_a=RATED_A) as drive:
+            drive.open(PERIOD_S)
+            found = drive.describe()
+            assert found.untold is None
+            assert "current_a" in found.measured
+            assert (Mode.CURRENT in found.modes) is takes
 
 
 @pytest.mark.parametrize("name", ["plain", "life-guarding", "rpdo-timer", "no-reaction-object"])

@@ -1,6 +1,7 @@
 """The catalogue, and an effect that another package offers."""
 
 import sys
+from dataclasses import replace
 
 import pytest
 
@@ -107,6 +108,16 @@ def test_an_effect_that_the_trials_cannot_show_says_why(effect, temperature_c, w
         dataset.check_applicable(effect_named(effect))
     with pytest.raises(NotApplicableError, match=words):
         fit_model(dataset, ["viscous", effect])
+
+
+def test_a_load_that_nobody_told_is_not_said_to_be_the_same():
+    untold = [
+        replace(one, conditions={key: value for key, value in one.conditions.items() if key != "load_kg"})
+        for one in recordings(trials=plans(loads_kg=(0.1,)))
+    ]
+    dataset = make_dataset(untold, FACTS, Processing(5.6))
+    with pytest.raises(NotApplicableError, match="needs load_kg to differ over the data, and no trial tells it"):
+        dataset.check_applicable(effect_named("weight_friction"))
 
 
 def test_what_is_withheld_is_no_candidate_and_comes_back():
