@@ -59,7 +59,6 @@ def test_a_message_about_a_stop_stands_as_long_as_it_is_true(open_page, phase, s
 def test_powered_off_is_not_said_of_a_joint_that_runs_again(service, open_page, monkeypatch, opening_s):
     begin = Runner._begin
     monkeypatch.setattr(Runner, "_begin", lambda *args: (time.sleep(opening_s), begin(*args))[1])
-    service.run("steps", repeats=1)  # the first run of a process compiles, and is slow to start and to end
     page = open_page("#bench?kind=steps&repeats=20")
     start(page)
     page.keyboard.press("Escape")
