@@ -28,7 +28,7 @@ class Case(NamedTuple):
     asked_s: float
 
 
-CASES = (Case(24, "0,0.1", 2, 5.0), Case(216, "0,0.05,0.1", 12, 60.0))
+CASES = (Case(24, "0,0.1", 2, 2.5), Case(216, "0,0.05,0.1", 12, 12.0))
 
 
 def main() -> None:
