@@ -59,6 +59,17 @@ def test_the_hidden_effect_is_named_added_and_helps(story):
     assert not any(one.in_class for one in after.ranking)
 
 
+def test_what_is_not_named_says_what_it_lacks(story):
+    found, after = story["diagnose"].ranking, story["diagnose after"].ranking
+    assert found[0].why_not == []
+    assert all(one.why_not for one in after), "nothing is named beside it"
+    for one in (*found, *after):
+        assert ("score not above 0" in one.why_not) == (one.score <= 0.0)
+        assert ("impossible size, sign or shape" in one.why_not) == (not one.physical)
+        assert ("not named: " in one.sentence) == bool(one.why_not)
+        assert all(doubt in one.sentence for doubt in one.why_not)
+
+
 def test_the_numbers_of_all_answers_agree(story, study):
     base, better, again = story["ladder"].rungs
     for rung, compared in ((base, story["compare"]), (better, story["compare after"])):

@@ -39,7 +39,7 @@ def doubts(candidate: Candidate) -> list[str]:
     explained = before**2 * (1.0 - (1.0 - gain.value) ** 2)
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
     asked = {
-        "evidence below its price": candidate.score > 0.0,
+        "score not above 0": candidate.score > 0.0,
         "may be luck": candidate.p_value <= SIGNIFICANT or strong,
         f"explains under {LEAST_EXPLAINED:.2%} of the effort": explained >= LEAST_EXPLAINED**2,
         f"gain under {least:.1%}": gain.value >= least,

@@ -46,7 +46,7 @@ def test_near_reversals_and_at_starts_a_strong_score_alone_does_not_make_a_gain_
     ("changed", "doubt"),
     [
         ({}, []),
-        ({"score": -1.0}, ["evidence below its price"]),
+        ({"score": -1.0}, ["score not above 0"]),
         ({"p_value": 0.02}, ["may be luck"]),
         ({"before": 0.0006}, ["explains under 0.05% of the effort"]),
         ({"gain": Gain(0.004, 0.001, 0.01)}, ["gain under 0.5%"]),
