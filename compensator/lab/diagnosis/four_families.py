@@ -13,6 +13,7 @@ from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import UnusableDataError
+from compensator.lab.left_over.orders import with_found_order
 from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import predicts_better
@@ -79,7 +80,7 @@ def judged(fit: Fit) -> FourFamilies:
         UnusableDataError: no candidate can be judged on these trials.
     """
     progress.enter(COLUMNS)
-    gathered = with_noise(gather(fit))
+    gathered = with_noise(with_found_order(gather(fit)))
     physical = [block for block in gathered.named if not effect_named(block.name).pipeline]
     pipeline = [block for block in gathered.named if effect_named(block.name).pipeline]
     if not physical:

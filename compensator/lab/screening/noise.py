@@ -19,16 +19,13 @@ from scipy.fft import next_fast_len
 from scipy.stats import f as fisher
 
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
-from compensator.lab.rows.dataset import Dataset
+from compensator.lab.rows.dataset import BLOCK_S, FEWEST_ROWS, Dataset
 from compensator.lab.screening.stops import StopToStop
 
 ComplexArray = NDArray[np.complex128]
 
-MEMORY_S = 2.0  # beyond which residuals are taken to be independent, as stretches are
 SPEEDS = 3  # kinds of rows, slow to fast, as many of each
-SHRINK_ROWS = 20  # a trial's own scale is drawn to that of all by so many rows
 STEADIEST = 0.5  # share of the noise, at any frequency, that is left to what does not last a stroke: both look alike
-PASSES = 3  # of learning what a fit takes from the noise
 DRAWS = 9999
 
 
@@ -71,7 +68,7 @@ class Noise:
     Attributes:
         places: of the trials.
         autocovariances: of each speed, by lag in rows, tapered to zero (Parzen), shape (SPEEDS, lags).
-        known_from: independent stretches of MEMORY_S, less one: how well the noise is known.
+        known_from: independent stretches of BLOCK_S, less one: how well the noise is known.
         outweighed: what is missing is larger than the noise, so that what a formula leaves of it tells formulas apart
             better than the noise does.
         strokes: between stops; None where static friction is not in the model.
@@ -112,12 +109,13 @@ class Noise:
         stretches = len(np.unique(dataset.block_index[rows]))
         outweighed = before > 2.0 * float(residual @ residual)
         noise = cls(tuple(found), _tapered(free * products, pairs), max(stretches - 1, 1), outweighed)
-        noise = noise._given_back(products, pairs, lambda one: one.taken(basis))
+        noise = replace(noise, autocovariances=_tapered(products + noise.taken(basis), pairs))
         if strokes is None:
             return noise
         cleared = strokes.scaled(residual[:, None], np.zeros(int(strokes.index.max()) + 1))[:, 0]
         products, _ = _products(((cleared, place) for place in found), longest)
-        other = noise._given_back(products, pairs, lambda one: one.taken(basis) + one.taken_by(strokes))
+        taken = noise.taken(basis) + noise.taken_by(strokes)
+        other = replace(noise, autocovariances=_tapered(products + taken, pairs))
         variance = strokes.variance(basis, residual, other.covariance)
         if variance == 0.0:
             return noise
@@ -162,13 +160,6 @@ class Noise:
             total += self.from_stop_to_stop * (sums.T @ sums)
         symmetric: FloatArray = 0.5 * (total + total.T)
         return symmetric
-
-    def _given_back(self, products: FloatArray, pairs: FloatArray, taken: Callable[["Noise"], FloatArray]) -> "Noise":
-        """The same, its autocovariances those of products (SPEEDS, lags) and of what was taken from them."""
-        noise = self
-        for _ in range(PASSES):
-            noise = replace(noise, autocovariances=_tapered(products + taken(noise), pairs))
-        return noise
 
     def taken(self, basis: FloatArray) -> FloatArray:
         """What a fit of an orthonormal basis (n, b) of rows as they were measured takes from noise's products by lag.
@@ -253,7 +244,7 @@ def strength(share: FloatArray, covariance: FloatArray) -> float:
 
 
 def _places(dataset: Dataset, rows: BoolArray, residual: FloatArray) -> tuple[list[_Place], int]:
-    """Places of the chosen rows, and how many rows MEMORY_S is at most."""
+    """Places of the chosen rows, and how many rows BLOCK_S is at most."""
     velocity = np.abs(dataset.rows_of([trial.motion.velocity for trial in dataset.trials])[rows])
     speed = np.searchsorted(np.quantile(velocity, np.arange(1, SPEEDS) / SPEEDS), velocity)
     overall = _power_by_kind(residual, speed) / np.maximum(np.bincount(speed, minlength=SPEEDS), 1)
@@ -261,7 +252,7 @@ def _places(dataset: Dataset, rows: BoolArray, residual: FloatArray) -> tuple[li
     for index, trial in enumerate(dataset.trials):
         times_s = dataset.time_of(trial)
         period_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else 1.0
-        longest = max(longest, round(MEMORY_S / period_s))
+        longest = max(longest, round(BLOCK_S / period_s))
         chosen = rows[dataset.trial_index == index]
         if chosen.any():
             grid = np.round((times_s[chosen] - times_s[chosen][0]) / period_s).astype(np.int64)
@@ -289,7 +280,7 @@ def _power(residual: FloatArray, speed: IntArray, overall: FloatArray) -> FloatA
     """Of one trial's residual (n,) over that of all, by kind of row, drawn to 1; shape (SPEEDS,)."""
     known = np.where(overall > 0.0, overall, 1.0)
     count = np.bincount(speed, minlength=SPEEDS)
-    power: FloatArray = (_power_by_kind(residual, speed) / known + SHRINK_ROWS) / (count + SHRINK_ROWS)
+    power: FloatArray = (_power_by_kind(residual, speed) / known + FEWEST_ROWS) / (count + FEWEST_ROWS)
     return np.where(overall > 0.0, power, 1.0)
 
 

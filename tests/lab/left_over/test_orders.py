@@ -29,7 +29,7 @@ def test_noise_does_not_come_back(seed):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_the_best_of_a_thousand_orders_is_no_small_chance(seed, monkeypatch):
-    for bound, anything in (("FORETOLD", -np.inf), ("LEAST_OF_EFFORT", 0.0)):
+    for bound, anything in (("VERY_STRONG", -np.inf), ("LEAST_OF_EFFORT", 0.0)):
         monkeypatch.setattr(orders, bound, anything)
     found = line(fitted(seed=seed), 1.0)
     assert found is not None
@@ -90,7 +90,7 @@ def test_what_comes_in_one_stretch_alone_is_no_line(monkeypatch):
 
     fit = fitted(extra)
     assert line(fit, 1.0) is None
-    monkeypatch.setattr(orders, "FORETOLD", -np.inf)
+    monkeypatch.setattr(orders, "VERY_STRONG", -np.inf)
     assert line(fit, 1.0) is not None
 
 

@@ -36,5 +36,6 @@ EFFECT = Effect(
     source="Jahns, Soong 1996",
     shapes=shapes,
     shape_names=("order",),
+    goes_round="force",
     confused_with=("position_periodic_friction", "spring"),
 )

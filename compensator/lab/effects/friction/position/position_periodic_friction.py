@@ -35,6 +35,7 @@ EFFECT = Effect(
     source="Garcia et al. 2002; common in harmonic drives",
     shapes=shapes,
     shape_names=("order",),
+    goes_round="against the motion",
     confused_with=("load_friction",),
     dry_friction=True,
 )
