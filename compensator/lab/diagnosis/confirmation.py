@@ -37,7 +37,7 @@ def doubts(candidate: Candidate) -> list[str]:
     strong = candidate.score >= VERY_STRONG
     before, gain = candidate.before, candidate.gain
     explained = before**2 * (1.0 - (1.0 - gain.value) ** 2)
-    chain = candidate.effect.pipeline or candidate.effect.rows != "sliding"
+    chain = bool(candidate.effect.standing_in) or candidate.effect.rows != "sliding"
     least = LEAST_GAIN_OF_CHAIN if chain else LEAST_GAIN
     asked = {
         "score not above 0": candidate.score > 0.0,

@@ -39,6 +39,7 @@ class Motion:
         predicted, effort_rate: predicted effort, all of it, and its rate of change.
         largest_effort: predicted, of all trials; 0 before anything is predicted.
         bend: what effects of the model with a `slope` add for each unit of effort that is predicted more.
+        back_emf: effort per velocity that drives no current: of a voltage, where the constant is told; else 0.
         late_s: by how much the position is older than the effort, as far as the model says.
         doubt: by how much these may be wrong for what teeth do in known free play, in the measure of `bend`.
         temperature_c, supply_v: NaN where not measured.
@@ -77,6 +78,7 @@ class Motion:
     fast: float
     doubt: FloatArray | float = 0.0
     late_s: float = 0.0
+    back_emf: float = 0.0
     load_inertia: float = 0.0
     misread_acceleration: FloatArray | float = 0.0
     measured_load: FloatArray | float = np.nan
@@ -118,6 +120,12 @@ class Motion:
     def step_s(self) -> float:
         """Time from sample to sample [s]; 0 of a single moment."""
         return float(self.time_s[1] - self.time_s[0]) if len(self.time_s) > 1 else 0.0
+
+    @property
+    def driven(self) -> FloatArray:
+        """Predicted effort in proportion to the motor's current: of a voltage, what is not back-EMF; shape (n,)."""
+        found: FloatArray = self.predicted - self.back_emf * self.velocity
+        return found
 
     def averaged(self, order: float) -> FloatArray:
         """What an average over one sample leaves of a ripple of an order [rad per unit of position], shape (n,).
