@@ -29,7 +29,7 @@ def is_confirmed(candidate: Candidate) -> bool:
 
 def is_sure(candidate: Candidate) -> bool:
     """Whether a candidate is confirmed but for the size and sign that it would need."""
-    return not doubts(replace(candidate, physical=True))
+    return not doubts(replace(candidate, physical=True, refused=""))
 
 
 def doubts(candidate: Candidate) -> list[str]:
@@ -47,7 +47,7 @@ def doubts(candidate: Candidate) -> list[str]:
         "gain not sure": gain.low > 0.0 or (strong and candidate.rows == "sliding"),
         "impossible size, sign or shape": candidate.physical,
     }
-    return [doubt for doubt, holds in asked.items() if not holds]
+    return [doubt for doubt, holds in asked.items() if not holds] + ([candidate.refused] if candidate.refused else [])
 
 
 def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:

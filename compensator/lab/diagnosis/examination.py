@@ -11,7 +11,7 @@ from compensator.lab.diagnosis.physical import is_physical
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import MotionRows
-from compensator.lab.model.fit import fit_sliding, with_effect
+from compensator.lab.model.fit import fit_effects, fit_sliding, with_effect
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut
@@ -19,7 +19,7 @@ from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import determination
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Evidence, Screening, kept_evidence, new_directions
+from compensator.lab.screening.evidence import VERY_STRONG, Evidence, Screening, kept_evidence, new_directions
 
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
@@ -36,7 +36,10 @@ def best_shapes(screening: Screening) -> list[Evidence]:
 
 
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
-    """Candidates for the best shape of each effect: those that are confirmed, then the rest; each by score."""
+    """Candidates for the best shape of each effect: those that are confirmed, then the rest; each by score.
+
+    Of those that are confirmed, one that predicts other trials better for sure goes first.
+    """
     before = _held_out(fit, gathered.show_in)
     sliding = None if gathered.show_in == "sliding" else fit_sliding(fit.dataset, fit.names, fit.training, fit.shapes)
     fits = [with_effect(fit, item.block.name, item.block.shape, sliding) for item in progress.each(evidence)]
@@ -45,13 +48,32 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     blocks = [block for block in gathered.named if block.name in asked]
     given = [kept_evidence(gathered.with_block(item.block).bases, blocks, gathered.noise) for item in evidence]
     spans = _spans(gathered)
-    candidates = []
+    found = []
     for index, (item, after) in enumerate(zip(evidence, afters, strict=True)):
         alike = _alike(item, spans)
         possible = [other for other in evidence if is_physical(gathered, other)]
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, possible, alike)}
-        candidates.append(_candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0)))
-    return sorted(candidates, key=lambda one: not is_confirmed(one))  # stable: by score within each kind
+        candidate = _candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0))
+        found.append(_with_shapes_anew(candidate, after, fit, before, gathered.show_in))
+    confirmed = [one for one in found if is_confirmed(one[0])]
+    first = confirmed[0] if confirmed else None
+    for other in confirmed[1:]:
+        first = other if first is None or predicts_better(other[1], first[1]) else first
+    ranked = sorted(found, key=lambda one: (one is not first, not is_confirmed(one[0])))  # stable: by score
+    return [candidate for candidate, _ in ranked]
+
+
+def _with_shapes_anew(
+    candidate: Candidate, after: HeldOut, fit: Fit, before: HeldOut, show_in: MotionRows
+) -> tuple[Candidate, HeldOut]:
+    """A candidate and its held-out error; of one that only lacks gain, in the model with all shapes found anew.
+
+    A shape of the model may have taken what it explains, as a Stribeck curve of a high speed takes drag.
+    """
+    if is_confirmed(candidate) or candidate.score < VERY_STRONG or not candidate.physical:
+        return candidate, after
+    again = _held_out(fit_effects(fit.dataset, [*fit.names, candidate.effect.name], fit.training), show_in)
+    return replace(candidate, after=again.relative, gain=held_out_gain(before, again)), again
 
 
 def _explains(kept: dict[str, float], other: Evidence) -> bool:

@@ -125,15 +125,24 @@ def _predicts_motion_better(one: Answer, other: Answer) -> bool:
 
 
 def _first_of(families: list[Answer]) -> Answer:
-    """The first family with an answer; a curve that no effect follows, unless another family explains it."""
-    steady = families[0]
-    if steady.verdict == "nothing":
-        return next((answer for answer in families if answer.verdict != "nothing"), steady)
-    if steady.verdict == "missing":
-        chain = families[-1]
-        return chain if chain.verdict == "missing" and _explains_more(chain, steady) else steady
-    enough = FORMULA_SHARE * steady.strength
-    return next((a for a in families[1:] if a.verdict != "nothing" and a.strength >= enough), steady)
+    """The first family with an answer, unless the measuring chain, or another family, explains what it is better.
+
+    A curve that no effect follows gives way to an effect of the chain that explains more, and to a family that is
+    about as sure; a name of steady sliding to one of the chain that has more evidence, too.
+    """
+    steady, chain = families[0], families[-1]
+    first = next((answer for answer in families if answer.verdict != "nothing"), steady)
+    unknown = first.verdict == "unknown-effect"
+    competes = unknown or (first is steady and chain.strength > steady.strength)
+    if chain.verdict == "missing" and chain.gain > first.gain and competes:
+        return chain
+    if first is not steady or not unknown:
+        return first
+    return next((a for a in families[1:] if a.verdict != "nothing" and _is_about_as_sure(a, steady)), steady)
+
+
+def _is_about_as_sure(one: Answer, steady: Answer) -> bool:
+    return one.strength >= FORMULA_SHARE * steady.strength
 
 
 def _least_p(screening: Screening) -> dict[str, float]:
@@ -143,8 +152,3 @@ def _least_p(screening: Screening) -> dict[str, float]:
         p_value = min(1.0, item.block.scanned * item.p_value)
         found[item.block.name] = min(found.get(item.block.name, 1.0), p_value)
     return found
-
-
-def _explains_more(one: Answer, other: Answer) -> bool:
-    """Whether one family's best effect has more evidence, and leaves less, than another's on the same rows."""
-    return one.strength > other.strength and one.candidates[0].gain.value > other.candidates[0].gain.value

@@ -54,6 +54,6 @@ EFFECT = Effect(
     builds_on="effort",
     pipeline=True,
     efforts=("current", "torque"),  # what a drive measures; a duty or a voltage is what it was told
-    after=("measurement_delay",),
+    standing_in=frozenset({"jerk", "sign_rate"}),
     holds=is_none_shorter,
 )
