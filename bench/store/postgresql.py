@@ -31,6 +31,7 @@ from bench.store.tables.json_text import to_json
 WRITER_KEY = 0x46524943  # "FRIC": below all keys of claims
 CLAIM_PREFIX = "pg-"
 CONNECT_TIMEOUT_S = 10
+LOST = "23502"  # NULL where none may be: samples do not continue what the trial has, see tables/samples.py
 # a link that is cut is noticed in seconds, not in the quarter of an hour that TCP goes on for
 LINK = {"keepalives_idle": 5, "keepalives_interval": 2, "keepalives_count": 3, "tcp_user_timeout": 10_000}
 
@@ -88,7 +89,7 @@ class Postgresql:
 
     @contextmanager
     def sending(self, connection: Connection) -> Iterator[None]:
-        """By libpq's pipeline: one round trip for all of it. The commit stays outside: it would wait for what is unsent."""
+        """By libpq's pipeline: one round trip for all of it. The commit, which is waited for, stays outside."""
         try:
             with cast(Any, connection.connection.driver_connection).pipeline():
                 yield
@@ -108,6 +109,11 @@ class Postgresql:
             )
         if state == "53100":
             return StoreFullError(f"{where}: the server's disk is full; free some space there. Earlier blocks are kept")
+        if state == LOST:
+            return StoreFileError(
+                f"{where} lost rows that it had confirmed ({told}): its server was killed while synchronous_commit was "
+                "off; repeat the trial"
+            )
         if state in ("25006", "42501"):
             return StoreReadOnlyError(f"{where} may not be written ({told}); give the user rights on the database")
         if state.startswith("22") or isinstance(error, self._driver.DataError):
