@@ -7,7 +7,7 @@ from pydantic import ValidationError
 from bench.config.validation import problems
 from bench.errors import ParameterError, UnknownKindError
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.json_types import Values
+from bench.json_types import Value, Values
 
 # modules of `bench.experiments.kinds`, in the order in which their kinds are shown
 _SHOWN = (
@@ -38,7 +38,10 @@ def _kind_of(module: str) -> ExperimentKind:
 KINDS: dict[str, ExperimentKind] = {kind.name: kind for kind in map(_kind_of, _SHOWN)}
 _OF_DOCTOR = {kind.name: kind for kind in [_kind_of("homing")]}  # `doctor --home` runs it, nobody chooses it
 
-__all__ = ["KINDS", "ExperimentKind", "FinishedTrial", "Parameters", "TrialPlan", "find_kind", "parse_parameters"]
+__all__ = [
+    "KINDS", "ExperimentKind", "FinishedTrial", "Parameters", "TrialPlan", "find_kind", "parse_parameters",
+    "whole_parameters",
+]  # fmt: skip
 
 
 def find_kind(name: str) -> ExperimentKind:
@@ -63,3 +66,12 @@ def parse_parameters(kind: ExperimentKind, values: Values) -> Parameters:
         return kind.parameters.model_validate(values)
     except ValidationError as error:
         raise ParameterError(f"{kind.name}: " + "; ".join(problems(error, model=kind.parameters))) from error
+
+
+def whole_parameters(kind: str, values: Values) -> dict[str, Value]:
+    """Also those that were left out, as they are kept with an experiment.
+
+    Raises:
+        UnknownKindError, ParameterError
+    """
+    return parse_parameters(find_kind(kind), values).model_dump(mode="json")
