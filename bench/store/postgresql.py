@@ -7,7 +7,7 @@ when the process, or its network, is gone.
 """
 
 import secrets
-import select
+import selectors
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from types import ModuleType
@@ -199,8 +199,12 @@ def _send_all(connection: Connection, cursor: Any, *_: object) -> None:  # noqa:
     A block is larger than the buffer of a socket. libpq would keep the rest of it until the next statement.
     """
     link = cursor.connection.pgconn
-    while link.pipeline_status and link.flush():  # it takes in what the server answers, too
-        select.select([link.socket], [link.socket], [])
+    if not link.pipeline_status or not link.flush():
+        return
+    with selectors.DefaultSelector() as waiting:  # any number of a socket, as `select` does not take
+        waiting.register(link.socket, selectors.EVENT_READ | selectors.EVENT_WRITE)
+        while link.flush():  # it takes in what the server answers, too
+            waiting.select()
 
 
 def _options(url: URL, busy_timeout_s: float) -> str:
