@@ -1,5 +1,6 @@
 """What holds for all tests: one thread for linear algebra, signals that are heard, which tests the wall clock times."""
 
+import gc
 import os
 import signal
 from pathlib import Path
@@ -8,6 +9,9 @@ import pytest
 
 # the matrices are small, and waiting threads cost more than they save; read when numpy is imported
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# of what is imported nothing becomes garbage: a fifth of the collection of tests would go into looking through it
+gc.disable()
 
 # a shell that starts the tests in the background lets them, and every process of theirs, ignore Ctrl-C
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -75,6 +79,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.wall_clock)
             if path.startswith(BY_SECONDS):
                 item.add_marker(pytest.mark.by_seconds)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtestloop() -> None:
+    """From here on there is garbage; what has been imported is not looked through for it."""
+    gc.freeze()
+    gc.enable()
 
 
 def _is_on_a_real_wire(item: pytest.Item) -> bool:

@@ -1,56 +1,47 @@
 """All kinds of experiment, by name."""
 
+from importlib import import_module
+
 from pydantic import ValidationError
 
 from bench.config.validation import problems
 from bench.errors import ParameterError, UnknownKindError
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
-from bench.experiments.kinds import (
-    breakaway_ramps,
-    chirp,
-    coast_down,
-    commissioning,
-    excitation,
-    hold_and_soak,
-    homing,
-    identification,
-    load_sweep,
-    multisine,
-    reversals,
-    sinusoid,
-    speed_sweep,
-    steady_speeds,
-    steps,
-    teleoperation,
-    waveform,
+from bench.json_types import Value, Values
+
+# modules of `bench.experiments.kinds`, in the order in which their kinds are shown
+_SHOWN = (
+    "steps",
+    "load_sweep",
+    "speed_sweep",
+    "steady_speeds",
+    "sinusoid",
+    "excitation",
+    "breakaway_ramps",
+    "reversals",
+    "chirp",
+    "multisine",
+    "coast_down",
+    "hold_and_soak",
+    "waveform",
+    "teleoperation",
+    "commissioning",
+    "identification",
 )
-from bench.json_types import Values
 
-KINDS: dict[str, ExperimentKind] = {
-    kind.name: kind
-    for kind in (
-        steps.KIND,
-        load_sweep.KIND,
-        speed_sweep.KIND,
-        steady_speeds.KIND,
-        sinusoid.KIND,
-        excitation.KIND,
-        breakaway_ramps.KIND,
-        reversals.KIND,
-        chirp.KIND,
-        multisine.KIND,
-        coast_down.KIND,
-        hold_and_soak.KIND,
-        waveform.KIND,
-        teleoperation.KIND,
-        commissioning.KIND,
-        identification.KIND,
-    )
-}
 
-_OF_DOCTOR = {homing.KIND.name: homing.KIND}  # no experiment that one chooses: `doctor --home` runs it
+def _kind_of(module: str) -> ExperimentKind:
+    kind: ExperimentKind = import_module(f"bench.experiments.kinds.{module}").KIND
+    return kind
 
-__all__ = ["KINDS", "ExperimentKind", "FinishedTrial", "Parameters", "TrialPlan", "find_kind", "parse_parameters"]
+
+KINDS: dict[str, ExperimentKind] = {kind.name: kind for kind in map(_kind_of, _SHOWN)}
+_OF_DOCTOR = {kind.name: kind for kind in [_kind_of("homing")]}  # `doctor --home` runs it, nobody chooses it
+
+__all__ = [
+    "KINDS", "ExperimentKind", "FinishedTrial", "Parameters", "TrialPlan", "find_kind", "parse_parameters",
+    "whole_parameters",
+]  # fmt: skip
 
 
 def find_kind(name: str) -> ExperimentKind:
@@ -75,3 +66,12 @@ def parse_parameters(kind: ExperimentKind, values: Values) -> Parameters:
         return kind.parameters.model_validate(values)
     except ValidationError as error:
         raise ParameterError(f"{kind.name}: " + "; ".join(problems(error, model=kind.parameters))) from error
+
+
+def whole_parameters(kind: str, values: Values) -> dict[str, Value]:
+    """Also those that were left out, as they are kept with an experiment.
+
+    Raises:
+        UnknownKindError, ParameterError
+    """
+    return parse_parameters(find_kind(kind), values).model_dump(mode="json")

@@ -44,6 +44,22 @@ class Database:
         Args:
             durable: other machines act on it: a server keeps it, with all before it, whatever becomes of the server.
         """
+        with self._writing_alone() as connection:
+            self.backend.begin_write(connection)
+            if durable:
+                self.backend.make_durable(connection)
+            yield connection
+
+    @contextmanager
+    def recording(self) -> Iterator[Connection]:
+        """As `writing`, for statements whose results nobody looks at: a server gets them without waiting for each."""
+        with self._writing_alone() as connection, self.backend.sending(connection):
+            self.backend.begin_write(connection)
+            yield connection
+
+    @contextmanager
+    def _writing_alone(self) -> Iterator[Connection]:
+        """A transaction that writes; of this process it is the only one."""
         if not self._writer.acquire(timeout=self.busy_timeout_s):
             raise StoreLockedError(
                 f"store '{self.where}': another thread has been writing for more than {self.busy_timeout_s:g} s; "
@@ -53,18 +69,9 @@ class Database:
             with self.explained(), self.backend.engine.connect() as connection:
                 connection = connection.execution_options(**self.backend.write_options)
                 with connection.begin():
-                    self.backend.begin_write(connection)
-                    if durable:
-                        self.backend.make_durable(connection)
                     yield connection
         finally:
             self._writer.release()
-
-    @contextmanager
-    def recording(self) -> Iterator[Connection]:
-        """As `writing`, for statements whose results nobody looks at: a server gets them without waiting for each."""
-        with self.writing() as connection, self.backend.sending(connection):
-            yield connection
 
     def claim(self) -> Claim:
         """Say that this process runs experiments. Called inside a transaction that writes."""

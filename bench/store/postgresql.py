@@ -7,12 +7,13 @@ when the process, or its network, is gone.
 """
 
 import secrets
+import selectors
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from types import ModuleType
 from typing import Any, cast
 
-from sqlalchemy import Connection, create_engine, text
+from sqlalchemy import Connection, create_engine, event, text
 from sqlalchemy.engine import URL
 from sqlalchemy.exc import DBAPIError
 
@@ -30,6 +31,7 @@ from bench.store.tables.json_text import to_json
 WRITER_KEY = 0x46524943  # "FRIC": below all keys of claims
 CLAIM_PREFIX = "pg-"
 CONNECT_TIMEOUT_S = 10
+LOST = "23502"  # NULL where none may be: samples do not continue what the trial has, see tables/samples.py
 # a link that is cut is noticed in seconds, not in the quarter of an hour that TCP goes on for
 LINK = {"keepalives_idle": 5, "keepalives_interval": 2, "keepalives_count": 3, "tcp_user_timeout": 10_000}
 
@@ -56,7 +58,7 @@ class Postgresql:
             url.set(drivername="postgresql+psycopg"),
             isolation_level="REPEATABLE READ",
             connect_args={
-                "options": f"-c lock_timeout={max(1, round(1000 * busy_timeout_s))}",
+                "options": _options(url, busy_timeout_s),
                 "connect_timeout": CONNECT_TIMEOUT_S,
                 **LINK,
             },
@@ -64,6 +66,7 @@ class Postgresql:
             max_overflow=-1,
             json_serializer=to_json,
         )
+        event.listen(self.engine, "after_cursor_execute", _send_all)
 
     @property
     def is_read_only(self) -> bool:
@@ -86,7 +89,7 @@ class Postgresql:
 
     @contextmanager
     def sending(self, connection: Connection) -> Iterator[None]:
-        """By libpq's pipeline: one round trip for all of it, and the server works while the next block is made."""
+        """By libpq's pipeline: one round trip for all of it. The commit, which is waited for, stays outside."""
         try:
             with cast(Any, connection.connection.driver_connection).pipeline():
                 yield
@@ -106,6 +109,11 @@ class Postgresql:
             )
         if state == "53100":
             return StoreFullError(f"{where}: the server's disk is full; free some space there. Earlier blocks are kept")
+        if state == LOST:
+            return StoreFileError(
+                f"{where} lost rows that it had confirmed ({told}): its server was killed while synchronous_commit was "
+                "off; repeat the trial"
+            )
         if state in ("25006", "42501"):
             return StoreReadOnlyError(f"{where} may not be written ({told}); give the user rights on the database")
         if state.startswith("22") or isinstance(error, self._driver.DataError):
@@ -183,6 +191,26 @@ class SessionClaim:
         """End the session, and with it the lock."""
         self._connection.invalidate()  # not back to the pool: the session would live on
         self._connection.close()
+
+
+def _send_all(connection: Connection, cursor: Any, *_: object) -> None:  # noqa: ARG001
+    """Have the server begin with a statement of a pipeline while the next block is made.
+
+    A block is larger than the buffer of a socket. libpq would keep the rest of it until the next statement.
+    """
+    link = cursor.connection.pgconn
+    if not link.pipeline_status or not link.flush():
+        return
+    with selectors.DefaultSelector() as waiting:  # any number of a socket, as `select` does not take
+        waiting.register(link.socket, selectors.EVENT_READ | selectors.EVENT_WRITE)
+        while link.flush():  # it takes in what the server answers, too
+            waiting.select()
+
+
+def _options(url: URL, busy_timeout_s: float) -> str:
+    """Settings of a session: the store's, and behind them those of the URL, which would be lost otherwise."""
+    own = f"-c lock_timeout={max(1, round(1000 * busy_timeout_s))}"
+    return " ".join([own, *url.normalized_query.get("options", ())])
 
 
 def _driver() -> ModuleType:

@@ -1,4 +1,4 @@
-"""`python -m tests.commission.draws N [SEED] [FIRST]`: commission N rigs drawn at random, and say how each ended.
+"""`python -m tests.commission.draws N [SEED] [FIRST] [WAIT_S]`: commission N rigs drawn at random, say how each ended.
 
 Every rig is a simulated device behind its real driver, in virtual time: RoboClaw, Modbus and CANopen in turn. Printed
 are the time of the bench, the answers that were asked for, and the first load beside what hung there.
@@ -40,14 +40,14 @@ from tests.commission.wires import CanWire, SerialWire, VirtualWire, plugged_in,
 
 ALLOWED_KG, ALLOWED_S, ALLOWED_ANSWERS = 2e-3, 900.0, 12
 TRAVEL_RAD = radians(120.0)
-ANSWER_S = 15.0  # that a person takes to read, to do and to answer; it counts as time of the bench
+ANSWER_S = 15  # that a person takes to read, to do and to answer; it counts as time of the bench
 
 
 class Owner:
     """Plays the person at the bench, by what was drawn of him."""
 
-    def __init__(self, rig: DrawnRig, wire: VirtualWire) -> None:
-        self._rig, self._wire, self.answers = rig, wire, 0
+    def __init__(self, rig: DrawnRig, wire: VirtualWire, wait_s: int) -> None:
+        self._rig, self._wire, self._wait_s, self.answers = rig, wire, wait_s, 0
 
     @property
     def _axis(self) -> Axis:
@@ -58,7 +58,7 @@ class Owner:
 
     def _take_time(self) -> None:
         self.answers += 1
-        TIME.advance(ANSWER_S)
+        TIME.advance(self._wait_s)
 
     def number(self, question: Question) -> float | None:
         self._take_time()
@@ -156,12 +156,12 @@ def store() -> Iterator[tuple[Store, Path]]:
         yield opened, Path(folder)
 
 
-def commission(rig: DrawnRig) -> Ending:
-    """Commission a rig."""
+def commission(rig: DrawnRig, wait_s: int = ANSWER_S) -> Ending:
+    """Commission a rig; its owner answers after some seconds, and the rest of `ANSWER_S` only counts."""
     wire, port, drive = made(rig)
     if rig.fault == "encoder unplugged":
         wire.device.axis.meet(fault_by_name("encoder-stuck", 0.0, duration_s=1e9))
-    owner, evidence, began = Owner(rig, wire), Evidence(), datetime.now()
+    owner, evidence, began = Owner(rig, wire, wait_s), Evidence(), datetime.now()
     refusal, first_kg, found_kg, start_s = "", nan, nan, TIME.now()
     table = BenchTable("drawn", drive, TRAVEL_RAD)
     with plugged_in(port), store() as (trials, folder), closing(Runner(table.looking(), trials)) as runner:
@@ -174,15 +174,16 @@ def commission(rig: DrawnRig) -> Ending:
         except (BenchError, DriveError) as error:
             refusal = str(error)
     took_s = (datetime.now() - began).total_seconds()
-    return Ending(rig, refusal, TIME.now() - start_s, owner.answers, first_kg, found_kg, evidence, took_s)
+    bench_s = TIME.now() - start_s + owner.answers * (ANSWER_S - wait_s)
+    return Ending(rig, refusal, bench_s, owner.answers, first_kg, found_kg, evidence, took_s)
 
 
-def main(count: int, seed: int, first: int = 0) -> int:
+def main(count: int, seed: int, first: int = 0, wait_s: int = ANSWER_S) -> int:
     """Commission so many rigs; returns how many did not end as they should."""
     endings = []
     print(f"{'rig':>3} {'wire':8} {'bench':>6} {'answers':>7} {'hung':>7} {'found':>7}  fault, and the refusal")
     for number in range(first, first + count):
-        ending = commission(draw_rig(number, seed))
+        ending = commission(draw_rig(number, seed), wait_s)
         endings.append(ending)
         found = "" if isnan(ending.found_kg) else f"{1e3 * ending.found_kg:.1f} g"
         hung = f"{1e3 * ending.rig.first_kg:.1f} g"

@@ -3,7 +3,6 @@
 import os
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
@@ -14,6 +13,7 @@ from bench.store import Store
 from bench.study.create import create_study
 from bench.study.diagnosis.diagnose_many import diagnose_many
 from tests.lab.synthetic import plans
+from tests.parallel.items import after, squared, takes_its_worker_with_it_once
 from tests.study.conftest import imported
 
 pytestmark = pytest.mark.timeout(300)
@@ -28,60 +28,42 @@ def address():
         yield made.scheduler_address
 
 
-def _squared(number: int) -> tuple[int, int]:
-    if number < 0:
-        raise ValueError(f"{number} is below 0")
-    return number**2, os.getpid()
-
-
-def _takes_its_worker_with_it_once(mark: Path) -> int:
-    if not mark.exists():
-        mark.touch()
-        os._exit(1)
-    return len(mark.name)
-
-
-def _after(seconds: float) -> float:
-    time.sleep(seconds)
-    return seconds
-
-
 def test_results_are_those_of_this_machine_in_the_same_order(address):
-    there = list(over_cores(_squared, range(20), cluster=address))
-    assert [square for square, _ in there] == [square for square, _ in over_cores(_squared, range(20), workers=1)]
+    there = list(over_cores(squared, range(20), cluster=address))
+    assert [square for square, _ in there] == [square for square, _ in over_cores(squared, range(20), workers=1)]
     assert os.getpid() not in {process for _, process in there}
 
 
 def test_a_lost_worker_costs_no_result(address, tmp_path):
     marks = [tmp_path / ("x" * length) for length in range(1, 7)]
-    for mark in (marks[0], *marks[3:]):  # two workers are lost: each new one imports everything again
+    for mark in (marks[0], *marks[3:]):  # two workers are lost
         mark.touch()
-    assert sorted(as_they_end(_takes_its_worker_with_it_once, marks, cluster=address)) == [1, 2, 3, 4, 5, 6]
+    assert sorted(as_they_end(takes_its_worker_with_it_once, marks, cluster=address)) == [1, 2, 3, 4, 5, 6]
     assert all(mark.exists() for mark in marks)
 
 
 def test_an_error_of_an_item_is_told(address):
     with pytest.raises(ValueError, match="-1 is below 0"):
-        list(over_cores(_squared, [2, -1], cluster=address))
+        list(over_cores(squared, [2, -1], cluster=address))
 
 
 def test_an_address_is_never_guessed():
     for text in ("", "here", "10.0.0.5:8786"):
         with pytest.raises(ClusterError, match="wanted is a scheduler's address"):
-            list(over_cores(_squared, [1], cluster=text))
+            list(over_cores(squared, [1], cluster=text))
 
 
 def test_a_cluster_that_does_not_answer_is_named(monkeypatch):
     pytest.importorskip("distributed", reason="needs the extra `cluster`")
     monkeypatch.setattr(cluster, "CONNECT_S", 0.2)
     with pytest.raises(ClusterError, match=r"tcp://127\.0\.0\.1:9: no scheduler answers"):
-        list(over_cores(_squared, [1], cluster="tcp://127.0.0.1:9"))
+        list(over_cores(squared, [1], cluster="tcp://127.0.0.1:9"))
 
 
 def test_without_the_extra_it_is_said_how_to_have_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(ClusterError, match="pip install 'friction-bench\\[cluster\\]'"):
-        list(over_cores(_squared, [1], cluster="tcp://127.0.0.1:8786"))
+        list(over_cores(squared, [1], cluster="tcp://127.0.0.1:8786"))
 
 
 def test_diagnoses_are_the_same_as_here(address, tmp_path):
@@ -96,7 +78,7 @@ def test_diagnoses_are_the_same_as_here(address, tmp_path):
 
 def test_who_leaves_early_does_not_wait_for_what_still_runs(address):
     """Last in this file: a worker of its cluster is busy for a while afterwards."""
-    results = as_they_end(_after, [0.0, 30.0], cluster=address)
+    results = as_they_end(after, [0.0, 30.0], cluster=address)
     assert next(results) == 0.0
     began = time.monotonic()
     results.close()

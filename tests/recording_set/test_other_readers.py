@@ -5,6 +5,7 @@ import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -20,10 +21,15 @@ from bench.recording_set import (
 from bench.store import Store, Trial
 from compensator.lab.recordings.recording import CHANNELS as CHANNELS_OF_THE_LAB
 
-duckdb = pytest.importorskip("duckdb", reason="needs duckdb: pip install 'friction-bench[test]'")
 pandas = pytest.importorskip("pandas", reason="needs pandas: pip install 'friction-bench[test]'")
 ROWS = 20_001
 CHANNELS = ("time_s", "position_rad", "temperature_c")
+
+
+@pytest.fixture
+def duckdb() -> ModuleType:
+    found: ModuleType = pytest.importorskip("duckdb", reason="needs duckdb: pip install 'friction-bench[test]'")
+    return found
 
 
 @pytest.fixture
@@ -79,7 +85,7 @@ def test_pandas_reads_the_csv(csv_file: Path, store: Store, trial: Trial) -> Non
     assert_exact(found, store, trial)
 
 
-def test_duckdb_reads_the_csv(csv_file: Path, store: Store, trial: Trial) -> None:
+def test_duckdb_reads_the_csv(duckdb: ModuleType, csv_file: Path, store: Store, trial: Trial) -> None:
     query = duckdb.sql(f"SELECT * FROM '{csv_file}'")
     assert query.columns == [*CHANNELS, "event"]
     assert query.types[:2] == ["DOUBLE", "DOUBLE"]
@@ -117,7 +123,7 @@ def test_pandas_reads_the_parquet(parquet_file: Path, store: Store, trial: Trial
     assert first.duty.isna().all()
 
 
-def test_duckdb_reads_the_parquet(parquet_file: Path, experiment_id: int) -> None:
+def test_duckdb_reads_the_parquet(duckdb: ModuleType, parquet_file: Path, experiment_id: int) -> None:
     query = f"""SELECT trial, condition_load_kg, count(*), count(temperature_c), max(duty), any_value(condition_reason)
                 FROM '{parquet_file}' GROUP BY ALL ORDER BY trial"""
     assert duckdb.sql(query).fetchall() == [
@@ -126,7 +132,7 @@ def test_duckdb_reads_the_parquet(parquet_file: Path, experiment_id: int) -> Non
     ]
 
 
-def test_a_condition_of_several_types_is_text(parquet_file: Path) -> None:
+def test_a_condition_of_several_types_is_text(duckdb: ModuleType, parquet_file: Path) -> None:
     query = f"SELECT DISTINCT trial, condition_grease FROM '{parquet_file}' ORDER BY trial"
     assert duckdb.sql(query).fetchall() == [("a", "=2+3"), ("b", "7.0")]
 

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from bench.evaluation.figures import trials as figures
 from bench.evaluation.paper.measurements import Plan
+from bench.experiments.registry import whole_parameters
 from bench.service.http.openapi import install
 from bench.study.models.base import EffortName, StudyModel
 from compensator.lab.effects.catalogue import catalogue
@@ -144,7 +145,7 @@ def test_what_the_page_of_the_paper_and_the_figures_are_made_of_can_be_started_o
     assert {"kind", "parameters"} <= set(schema["properties"])
     kinds = {kind["name"]: kind for kind in service.stranger.get("/experiment-kinds").json()["items"]}
     wanted = PAPER[name]
-    parameters = json.loads(json.dumps(wanted.whole_parameters()))
+    parameters = json.loads(json.dumps(whole_parameters(wanted.kind, wanted.parameters)))
     assert set(parameters) <= set(kinds[wanted.kind]["parameters"]["properties"])
     jsonschema_rs.validator_for(kinds[wanted.kind]["parameters"]).validate(parameters)
     with pytest.raises(jsonschema_rs.ValidationError):

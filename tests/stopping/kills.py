@@ -228,7 +228,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--way", action="append", help="only this one; repeatable")
+    names = [way.name for way in WAYS]
+    parser.add_argument("--way", action="append", choices=names, metavar="WAY", help="only this one; repeatable")
     parser.add_argument("--joints", type=int, choices=(1, 2), default=1, help="2: a master and a slave, served")
     parser.add_argument("--lab", action="store_true", help="hand in to a PostgreSQL server that is cut off and killed")
     parser.add_argument("--server", action="store_true", help="every fourth round with a store on a PostgreSQL server")

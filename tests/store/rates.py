@@ -13,7 +13,6 @@ import time
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from sqlalchemy import insert
@@ -23,20 +22,12 @@ from bench.store import Store, TrialWriter
 from bench.store.schema import TRIAL, TRIAL_CONDITION
 from bench.store.tables.experiments import now
 from bench.store.tables.trial_search import TrialQuery
+from tests.lab.line import Line, print_table
 
 CHANNELS = RECORDED[:10]
 APPENDED_ROWS = 32_768
 COMPARED_ROWS = 200_000  # the plain ways are slow: their rate is taken from fewer rows
 REPEATS = 7
-
-
-class Line(NamedTuple):
-    """One line of the table."""
-
-    what: str
-    asked: str
-    measured: str
-    met: bool
 
 
 # most memory of the process itself: what the kernel tells the parent includes the parent's own, of before the start
@@ -59,11 +50,8 @@ def main() -> None:
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="friction-bench-rates-") as folder:
         lines = [*writing(Path(folder)), *exporting(Path(folder), arguments.export_rows)]
-        lines += [*listing(Path(folder), arguments.trials), *plotting(Path(folder))]
-    width = max(len(line.what) for line in lines)
-    print(f"{'what':{width}} | {'asked':>14} | measured")
-    for line in lines:
-        print(f"{line.what:{width}} | {line.asked:>14} | {line.measured}{'' if line.met else '   NOT MET'}")
+        lines += [*listing(Path(folder), arguments.trials), *plotting(Path(folder)), *beside_a_server()]
+    print_table(lines)
 
 
 def writing(folder: Path) -> list[Line]:
@@ -150,6 +138,15 @@ def plotting(folder: Path) -> list[Line]:
             found.append(Line(f"2 M rows to 2 000 points: {what}", "< 30 ms", f"{taken_ms:.1f} ms", taken_ms < 30))
         whole_ms = 1e3 * best(3, lambda: store.samples(writer.trial_id))
         return [*found, Line("  reading all of it instead", "", f"{whole_ms:.0f} ms", True)]
+
+
+def beside_a_server() -> list[Line]:
+    """PostgreSQL against SQLite, on a server of its own; `database_rates` prints more of it."""
+    try:
+        from tests.store.database_rates import advised_beside_sqlite
+    except ImportError as missing:
+        return [Line("PostgreSQL / SQLite", "", f"not measured: {missing}", True)]
+    return advised_beside_sqlite()
 
 
 def signals(count: int) -> np.ndarray:

@@ -15,8 +15,9 @@ from sqlalchemy.pool import StaticPool
 from bench.store import Event, Store
 from bench.store.address import database_of
 from bench.store.database import Database
-from bench.store.migration import HEAD, MIGRATIONS, _upgrade
+from bench.store.migration import HEAD, MIGRATIONS, NEW_FILE, _upgrade
 from tests.store.freeze import PROVENANCE, RELEASED, rows
+from tests.store.new_file import text_of_new_file
 
 FILES = sorted(RELEASED.glob("*.sql"))
 
@@ -61,6 +62,10 @@ def test_every_schema_before_this_one_is_tested() -> None:
     scripts = ScriptDirectory.from_config(config)
     assert scripts.get_heads() == [HEAD]
     assert {file.stem for file in FILES} == {script.revision for script in scripts.walk_revisions()} - {HEAD}
+
+
+def test_what_is_kept_of_the_migrations_is_what_they_make() -> None:
+    assert NEW_FILE.read_text(encoding="utf-8") == text_of_new_file(), "python -m tests.store.new_file writes it"
 
 
 def test_a_new_file_is_what_the_migrations_make(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import psycopg
 import pytest
-from sqlalchemy import text
+from sqlalchemy import Connection, event, text
 from sqlalchemy.exc import IntegrityError
 
 from bench.store import Store
@@ -16,7 +16,8 @@ from bench.store.errors import (
     StoreReadOnlyError,
     StoreUnreachableError,
 )
-from tests.databases import PostgresqlServer
+from bench.store.tables.samples import BLOCK_ROWS
+from tests.databases import PostgresqlServer, postgresql_server
 from tests.store.examples import begin, begin_trial
 
 
@@ -106,3 +107,53 @@ def test_a_url_without_a_database_is_refused() -> None:
 def test_a_url_is_shown_without_its_password() -> None:
     assert shown("postgresql://ada:secret@host/bench") == "postgresql://ada:***@host/bench"
     assert shown("sqlite:////lab/bench.sqlite") == "sqlite:////lab/bench.sqlite"
+
+
+def test_settings_in_a_url_hold_for_its_sessions(store_url: str) -> None:
+    database = database_of(f"{store_url}&options=-csynchronous_commit%3Dlocal", 5.0)
+    with database.reading() as connection:
+        shown_as = {
+            name: connection.execute(text(f"SHOW {name}")).scalar() for name in ("synchronous_commit", "lock_timeout")
+        }
+    database.close()
+    assert shown_as == {"synchronous_commit": "local", "lock_timeout": "5s"}
+
+
+def test_a_block_has_left_before_the_next_one_is_made(store: Store) -> None:
+    writer = begin_trial(store, begin(store))
+    width, unsent = len(store.trial(writer.trial_id).channels), []
+
+    def look(connection: Connection, cursor: psycopg.Cursor, *_: object) -> None:
+        if cursor.connection.pgconn.pipeline_status:
+            unsent.append(cursor.connection.pgconn.flush())
+
+    event.listen(store._database.backend.engine, "after_cursor_execute", look)
+    writer.append(np.random.default_rng(1).normal(size=(4 * BLOCK_ROWS, width)))
+    assert len(unsent) > 4
+    assert not any(unsent)
+
+
+def test_an_append_waits_for_the_lock_of_another_program_and_then_names_it(store_url: str) -> None:
+    other = database_of(store_url, 5.0)
+    with Store.open(store_url, busy_timeout_s=0.2) as store:
+        writer = begin_trial(store, begin(store))
+        rows = np.zeros((4 * BLOCK_ROWS, len(store.trial(writer.trial_id).channels)))
+        with other.writing(), pytest.raises(StoreLockedError, match=r"for more than 0\.2 s; end what"):
+            writer.append(rows)
+        writer.append(rows)
+        assert store.trial(writer.trial_id).rows == len(rows)
+    other.close()
+
+
+def test_rows_that_a_server_lost_are_told_and_nothing_is_written_behind_the_gap() -> None:
+    settings = {"synchronous_commit": "off", "wal_writer_delay": "10s", "wal_writer_flush_after": "0"}
+    with postgresql_server(settings) as server, Store.open(server.url(server.create())) as store:
+        writer = begin_trial(store, begin(store))
+        width = len(store.trial(writer.trial_id).channels)
+        server.run("CHECKPOINT")
+        writer.append(np.zeros((8, width)))
+        server.crash()
+        assert store.trial(writer.trial_id).rows == 0  # the server had promised less
+        with pytest.raises(StoreFileError, match="lost rows that it had confirmed"):
+            writer.append(np.ones((8, width)))
+        assert store.trial(writer.trial_id).rows == 0

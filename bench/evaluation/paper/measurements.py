@@ -12,7 +12,7 @@ from bench.control.drive_factory import is_simulated
 from bench.errors import ConfigurationError, ExperimentError
 from bench.experiments.kinds.steady_speeds import PAPER_SPEEDS_RAD_S
 from bench.experiments.parts.at_rest import RIGHT_ANGLE_RAD
-from bench.experiments.registry import find_kind, parse_parameters
+from bench.experiments.registry import whole_parameters
 from bench.json_types import Value, Values
 from bench.runs.bench_control import Pace
 from bench.runs.runner import Runner
@@ -41,10 +41,6 @@ class Measurement:
 
     kind: str
     parameters: Values
-
-    def whole_parameters(self) -> dict[str, Value]:
-        """With the defaults, as a record has them."""
-        return parse_parameters(find_kind(self.kind), self.parameters).model_dump(mode="json")
 
 
 @dataclass(frozen=True)
@@ -146,7 +142,7 @@ def recorded(store: Store, wanted: Measurement) -> Experiment:
     Raises:
         NotFoundError: there is none.
     """
-    parameters = wanted.whole_parameters()
+    parameters = whole_parameters(wanted.kind, wanted.parameters)
     for found in store.experiments(kind=wanted.kind, outcome="completed"):
         if found.parameters == parameters:
             return found

@@ -5,7 +5,7 @@ from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
-from sqlalchemy import Connection, bindparam, insert, select, update
+from sqlalchemy import Connection, bindparam, case, insert, select, update
 
 from bench.store.errors import NotFoundError, StoreValueError
 from bench.store.records import Trial
@@ -42,7 +42,12 @@ FETCHED_BLOCKS = 16  # in memory at a time, where the database sends them one by
 
 _INSERT = insert(SAMPLE_BLOCK)
 _INSERT_OVERVIEW = insert(SAMPLE_OVERVIEW)
-_COUNT = update(TRIAL).where(TRIAL.c.id == bindparam("trial")).values(rows=bindparam("total"))
+# NULL, which the table refuses, where the trial has not the rows that it should have: no gap is written
+_COUNT = (
+    update(TRIAL)
+    .where(TRIAL.c.id == bindparam("trial"))
+    .values(rows=case((TRIAL.c.rows == bindparam("before"), bindparam("total"))))
+)
 
 
 def add(
@@ -68,7 +73,7 @@ def add(
         if piece is not None:
             connection.execute(_INSERT_OVERVIEW, piece)
     if len(rows):
-        connection.execute(_COUNT, {"trial": trial_id, "total": first_row + len(rows)})
+        connection.execute(_COUNT, {"trial": trial_id, "before": first_row, "total": first_row + len(rows)})
     return np.empty((rows.shape[1], 0)) if pending is None else pending
 
 

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Sequence
 
-from bench.experiments.registry import find_kind, parse_parameters
+from bench.experiments.registry import whole_parameters
 from bench.json_types import Values
 from bench.store import Experiment, Store
 from bench.study.models.study import note_for
@@ -59,12 +59,7 @@ def kept_out(store: Store, study_id: int) -> list[Experiment]:
 def without(choices: list[Choice], experiments: list[Experiment]) -> list[Choice]:
     """The choices that are none of these experiments."""
     known = {_key(one.kind, one.parameters) for one in experiments}
-    return [one for one in choices if _key(one.kind, _all_parameters(one)) not in known]
-
-
-def _all_parameters(choice: Choice) -> Values:
-    """Also those that do not differ from the defaults, as they are kept with an experiment."""
-    return parse_parameters(find_kind(choice.kind), choice.parameters).model_dump(mode="json")
+    return [one for one in choices if _key(one.kind, whole_parameters(one.kind, one.parameters)) not in known]
 
 
 def _key(kind: str, parameters: Values) -> str:

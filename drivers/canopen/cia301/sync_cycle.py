@@ -56,13 +56,12 @@ class SyncCycle:
         values: of each TPDO, as last received.
         sync_s: when the SYNC was sent that `values` answer, as far as is known [s].
         earliest_s: when the earliest SYNC was sent that they may answer [s].
-        received_s: when the last of `values` came in [s].
         number: of the SYNC that `values` answer.
     """
 
     def __init__(self, link: CanLink, tpdos: tuple[Pdo, ...], wait_s: float, period_s: float, lost_s: float) -> None:
         self.values: list[tuple[int, ...]] = [() for _ in tpdos]
-        self.sync_s = self.earliest_s = self.received_s = perf_counter()
+        self.sync_s = self.earliest_s = perf_counter()
         self.number = 0
         self.counts = CycleCounts()
         self._link = link
@@ -182,7 +181,6 @@ class SyncCycle:
             self.counts.late += 1
         else:
             self.counts.answered += 1
-        self.received_s = perf_counter()
         self.sync_s = self._sent_s
         self.earliest_s = self._under_way.popleft() if self._under_way else self._sent_s
         self.number = self.counts.sent
