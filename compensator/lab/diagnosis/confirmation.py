@@ -5,8 +5,6 @@ from dataclasses import replace
 
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
-from compensator.lab.effects.catalogue import catalogue
-from compensator.lab.effects.effect import Effect
 from compensator.lab.model.held_out_error import LEAST_OF_EFFORT
 from compensator.lab.screening.evidence import VERY_STRONG
 
@@ -64,14 +62,9 @@ def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:
     if diagnosis.verdict != "missing" or not diagnosis.classes:
         return None
     one = next((each for each in diagnosis.candidates if each.effect.name == diagnosis.classes[0][0]), None)
-    if one is None or one.gain.high >= SLIGHT_GAIN or _opens_others(one.effect):
+    if one is None or one.gain.high >= SLIGHT_GAIN:
         return None
     return one if explained_part(one.before, one.after) < SLIGHT_PART * explained else None
-
-
-def _opens_others(effect: Effect) -> bool:
-    """Whether it is of the measuring chain, and others cannot be judged before it is in the model, as a filter."""
-    return effect.pipeline and any(effect.name in other.after for other in catalogue().values())
 
 
 def explained_part(before: float, after: float) -> float:

@@ -38,7 +38,7 @@ def best_shapes(screening: Screening) -> list[Evidence]:
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
     """Candidates for the best shape of each effect: those that are confirmed, then the rest; each by score.
 
-    Of those that are confirmed, one that predicts other trials better for sure goes first.
+    Of those that are confirmed, one with about as much evidence that predicts other trials better for sure goes first.
     """
     before = _held_out(fit, gathered.show_in)
     sliding = None if gathered.show_in == "sliding" else fit_sliding(fit.dataset, fit.names, fit.training, fit.shapes)
@@ -48,32 +48,26 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     blocks = [block for block in gathered.named if block.name in asked]
     given = [kept_evidence(gathered.with_block(item.block).bases, blocks, gathered.noise) for item in evidence]
     spans = _spans(gathered)
-    found = []
-    for index, (item, after) in enumerate(zip(evidence, afters, strict=True)):
+    found: list[Candidate] = []
+    for index, item in enumerate(evidence):
         alike = _alike(item, spans)
         possible = [other for other in evidence if is_physical(gathered, other)]
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, possible, alike)}
-        candidate = _candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0))
-        found.append(_with_shapes_anew(candidate, after, fit, before, gathered.show_in))
-    confirmed = [one for one in found if is_confirmed(one[0])]
-    first = confirmed[0] if confirmed else None
-    for other in confirmed[1:]:
-        first = other if first is None or predicts_better(other[1], first[1]) else first
-    ranked = sorted(found, key=lambda one: (one is not first, not is_confirmed(one[0])))  # stable: by score
-    return [candidate for candidate, _ in ranked]
-
-
-def _with_shapes_anew(
-    candidate: Candidate, after: HeldOut, fit: Fit, before: HeldOut, show_in: MotionRows
-) -> tuple[Candidate, HeldOut]:
-    """A candidate and its held-out error; of one that only lacks gain, in the model with all shapes found anew.
-
-    A shape of the model may have taken what it explains, as a Stribeck curve of a high speed takes drag.
-    """
-    if is_confirmed(candidate) or candidate.score < VERY_STRONG or not candidate.physical:
-        return candidate, after
-    again = _held_out(fit_effects(fit.dataset, [*fit.names, candidate.effect.name], fit.training), show_in)
-    return replace(candidate, after=again.relative, gain=held_out_gain(before, again)), again
+        candidate = _candidate(gathered, item, (before, afters[index]), rivals, max(alike.values(), default=0.0))
+        if candidate.score >= VERY_STRONG and candidate.physical and not is_confirmed(candidate):
+            # a shape of the model may have taken what it explains, as a Stribeck curve of a high speed takes drag
+            explained = fit_effects(fit.dataset, [*fit.names, item.block.name], fit.training)
+            afters[index] = _held_out(explained, gathered.show_in)
+            candidate = as_in_the_ladder(candidate, fit, explained, gathered.show_in)
+        found.append(candidate)
+    confirmed = [index for index, one in enumerate(found) if is_confirmed(one)]
+    best = confirmed[0] if confirmed else None
+    for index in confirmed[1:]:
+        enough = evidence[index].noncentrality >= share_of(gathered.show_in) * evidence[confirmed[0]].noncentrality
+        if best is not None and enough and predicts_better(afters[index], afters[best]):
+            best = index
+    order = sorted(range(len(found)), key=lambda one: (one != best, one not in confirmed))  # stable: by score
+    return [found[index] for index in order]
 
 
 def _explains(kept: dict[str, float], other: Evidence) -> bool:

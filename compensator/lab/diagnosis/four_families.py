@@ -12,6 +12,7 @@ from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.left_over.orders import with_found_order
 from compensator.lab.model.fit import widened
@@ -68,7 +69,7 @@ class FourFamilies:
     def first(self) -> Answer:
         """The answer: that of the first family with one, but for a memory effect that predicts motion better."""
         first = _first_of(self.in_order)
-        if first is self.steady and self.memory is not None and _predicts_motion_better(self.memory, first):
+        if first is self.steady and self.memory is not None and _predicts_better(self.memory, first, "moving"):
             return self.memory
         return first
 
@@ -116,11 +117,11 @@ def _memory_of(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
     return answer_of(wide, gathered, screening, None), gathered.left_out
 
 
-def _predicts_motion_better(one: Answer, other: Answer) -> bool:
-    """Whether one family's name predicts rows in motion better than another's: its gain is above zero for sure."""
+def _predicts_better(one: Answer, other: Answer, rows: MotionRows) -> bool:
+    """Whether one family's name predicts rows better than another's: its gain is above zero for sure."""
     if one.explained is None or other.explained is None:
         return False
-    errors = [held_out(widened(fit, "moving"), "moving") for fit in (one.explained, other.explained)]
+    errors = [held_out(widened(fit, rows), rows) for fit in (one.explained, other.explained)]
     return predicts_better(*errors)
 
 
@@ -128,13 +129,14 @@ def _first_of(families: list[Answer]) -> Answer:
     """The first family with an answer, unless the measuring chain, or another family, explains what it is better.
 
     A curve that no effect follows gives way to an effect of the chain that explains more, and to a family that is
-    about as sure; a name of steady sliding to one of the chain that has more evidence, too.
+    about as sure; a name of steady sliding to one of the chain that has more evidence, and predicts better for sure.
     """
     steady, chain = families[0], families[-1]
     first = next((answer for answer in families if answer.verdict != "nothing"), steady)
     unknown = first.verdict == "unknown-effect"
-    competes = unknown or (first is steady and chain.strength > steady.strength)
-    if chain.verdict == "missing" and chain.gain > first.gain and competes:
+    if unknown and chain.verdict == "missing" and chain.gain > first.gain and _is_about_as_sure(chain, first):
+        return chain
+    if first is steady and chain.strength > steady.strength and _predicts_better(chain, steady, "sliding"):
         return chain
     if first is not steady or not unknown:
         return first

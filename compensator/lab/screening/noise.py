@@ -26,6 +26,7 @@ ComplexArray = NDArray[np.complex128]
 
 SPEEDS = 3  # kinds of rows, slow to fast, as many of each
 STEADIEST = 0.5  # share of the noise, at any frequency, that is left to what does not last a stroke: both look alike
+PASSES = 3  # of learning what a fit takes from the noise
 DRAWS = 9999
 
 
@@ -109,13 +110,12 @@ class Noise:
         stretches = len(np.unique(dataset.block_index[rows]))
         outweighed = before > 2.0 * float(residual @ residual)
         noise = cls(tuple(found), _tapered(free * products, pairs), max(stretches - 1, 1), outweighed)
-        noise = replace(noise, autocovariances=_tapered(products + noise.taken(basis), pairs))
+        noise = noise._given_back(products, pairs, lambda one: one.taken(basis))
         if strokes is None:
             return noise
         cleared = strokes.scaled(residual[:, None], np.zeros(int(strokes.index.max()) + 1))[:, 0]
         products, _ = _products(((cleared, place) for place in found), longest)
-        taken = noise.taken(basis) + noise.taken_by(strokes)
-        other = replace(noise, autocovariances=_tapered(products + taken, pairs))
+        other = noise._given_back(products, pairs, lambda one: one.taken(basis) + one.taken_by(strokes))
         variance = strokes.variance(basis, residual, other.covariance)
         if variance == 0.0:
             return noise
@@ -160,6 +160,13 @@ class Noise:
             total += self.from_stop_to_stop * (sums.T @ sums)
         symmetric: FloatArray = 0.5 * (total + total.T)
         return symmetric
+
+    def _given_back(self, products: FloatArray, pairs: FloatArray, taken: Callable[["Noise"], FloatArray]) -> "Noise":
+        """The same, its autocovariances those of products (SPEEDS, lags) and of what was taken from them."""
+        noise = self
+        for _ in range(PASSES):
+            noise = replace(noise, autocovariances=_tapered(products + taken(noise), pairs))
+        return noise
 
     def taken(self, basis: FloatArray) -> FloatArray:
         """What a fit of an orthonormal basis (n, b) of rows as they were measured takes from noise's products by lag.

@@ -13,6 +13,7 @@ from compensator.lab.left_over.orders import FORCE, FRICTION, GROWING, Line, for
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.gathering import gather
 from tests.lab.left_over.judged import fitted
+from tests.lab.synthetic import FACTS
 
 ORDER = 43.7  # not in the catalogue, which has whole ones up to 30, and multiples of a gear ratio that is known
 RIPPLE_N_M = 0.003  # a twentieth of the dry friction, half of the noise
@@ -45,7 +46,8 @@ def test_a_ripple_smaller_than_a_sensor_is_linear_is_no_line(monkeypatch):
 
 
 def test_a_ripple_of_an_order_that_the_catalogue_lacks_is_told():
-    fit = fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q + 0.4))
+    told = replace(FACTS, gear_ratio=100.0)
+    fit = fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q + 0.4), facts=told)
     found = line(fit)
     assert found is not None
     assert found.order == pytest.approx(ORDER, rel=0.02)
