@@ -26,6 +26,14 @@ SIDE_BY_SIDE = 32  # columns that are filtered at once, at least
 EFFORT: tuple[str, Shape] = ("the effort itself", ())  # kept: the same whatever is predicted or misread
 BLOCK_S = 2.0  # rows closer than this are not independent
 FEWEST_ROWS = 20  # of a trial that is judged by itself
+UNTOLD = {
+    "gear_ratio": "needs the gear ratio, which the rig does not tell; put [gear] ratio into rig.toml",
+    "supply_is_nominal": (
+        "cannot hide behind a supply voltage that is measured; if nobody measured it, put [supply] is_nominal = true "
+        "into rig.toml"
+    ),
+}
+"""Facts that effects need -> what is to be said where they are not told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -379,9 +387,7 @@ class Dataset:
             )
         for fact in effect.facts:
             if getattr(self.facts, fact) is None:
-                raise NotApplicableError(
-                    f"{effect.name} needs {fact}, which the rig does not tell; put it into rig.toml"
-                )
+                raise NotApplicableError(f"{effect.name} {UNTOLD[fact]}")
         for channel in effect.channels:
             if not all(channel in trial.signals.recording.channels for trial in self.trials):
                 raise NotApplicableError(f"{effect.name} needs channel {channel} in every trial; record it")
