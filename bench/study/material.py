@@ -144,6 +144,7 @@ def facts_of(rig: Rig) -> Facts:
         joint=rig.joint,
         horizontal=rig.horizontal,
         torque_per_current_n_m_a=(motor.torque_constant_n_m_a or 0.0) * (ratio or 0.0) if known else None,
+        back_emf_v_s_rad=_back_emf_v_s_rad(rig),
         gear_ratio=ratio,
         backlash_rad=rig.gear.backlash_rad,
         stiffness_n_m_rad=rig.gear.stiffness_n_m_rad,
@@ -154,6 +155,12 @@ def facts_of(rig: Rig) -> Facts:
         position_count=_position_count_rad(rig),
         effort=rig.effort.quantity if rig.effort else None,
     )
+
+
+def _back_emf_v_s_rad(rig: Rig) -> float | None:
+    """Back-EMF for each rad/s of the joint; in SI units the constant is that of the torque, where no other is told."""
+    constant, ratio = rig.motor.back_emf_v_s_rad or rig.motor.torque_constant_n_m_a, rig.gear.ratio
+    return None if constant is None or ratio is None or rig.joint == "linear" else constant * ratio
 
 
 def _position_count_rad(rig: Rig) -> float | None:

@@ -16,6 +16,7 @@ class Answer:
 
     Attributes:
         strength: noncentrality of what decided: the best effect, or the free curve that no effect follows.
+        gain: relative fall of the held-out error by that.
         remains: more than noise is left that nothing named here explains.
         explained: the model with the effect that is named, where one of the joint or the chain is.
         named: evidence for that effect.
@@ -29,6 +30,7 @@ class Answer:
     driver: str | None
     notes: list[Note]
     strength: float = 0.0
+    gain: float = 0.0
     remains: bool = False
     explained: Fit | None = None
     named: Evidence | None = None

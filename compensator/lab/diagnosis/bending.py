@@ -24,10 +24,11 @@ from compensator.lab.screening.evidence import VERY_STRONG, Evidence, among_all,
 
 @dataclass(frozen=True)
 class Bending:
-    """A free hysteresis that is missing for sure: its evidence, and the held-out error with it in the model."""
+    """A free hysteresis that is missing for sure: its evidence, and the held-out error with it, and its gain."""
 
     evidence: Evidence
     after: HeldOut
+    gain: float
 
     def predicts_best(self, fit: Fit, candidates: Sequence[Candidate]) -> bool:
         """Whether it has a lower held-out error, for sure, than the model with any of the effects that can be it."""
@@ -56,7 +57,7 @@ def bending(fit: Fit, gathered: Candidates) -> Bending | None:
     before, after = (held_out(model, None, determination(fit)) for model in (fit, bent))
     gain = held_out_gain(before, after)
     sure = gain.low > 0.0 or found[0].score >= VERY_STRONG
-    return Bending(found[0], after) if sure and gain.value >= LEAST_GAIN else None
+    return Bending(found[0], after, gain.value) if sure and gain.value >= LEAST_GAIN else None
 
 
 def _turns_back(gathered: Candidates) -> bool:

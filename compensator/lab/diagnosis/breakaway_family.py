@@ -39,7 +39,6 @@ from compensator.lab.screening.evidence import (
 )
 
 SPREAD = 3.0  # longest over shortest rest, or quickest over slowest rate, that shows an effect of it
-SHOWS = 0.01  # p in steady sliding, of one effect, from which it is seen there
 WITH_LAG, WITHOUT_LAG = 0, 1  # bases that effects are judged on top of
 TINY = float(np.finfo(float).tiny)
 RANGES = {"rest": "rests", "effort_rate": "rates of the effort"}
@@ -137,7 +136,7 @@ def breakaway_blocks(base: BreakawayFit, wanted: Sequence[Effect]) -> tuple[list
 def _shows_where_due(candidate: Candidate, sliding: Mapping[str, float] | None) -> bool:
     """Whether steady sliding does not speak against an effect that shows there, too."""
     due = sliding is not None and candidate.effect.rows == "sliding"
-    return not due or (sliding or {}).get(candidate.effect.name, 1.0) <= SHOWS
+    return not due or (sliding or {}).get(candidate.effect.name, 1.0) <= SIGNIFICANT
 
 
 def _over_one_model(base: BreakawayFit, bases: list[Base], evidence: list[Evidence]) -> list[Evidence]:

@@ -5,15 +5,13 @@ from dataclasses import replace
 
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
-from compensator.lab.effects.catalogue import catalogue
-from compensator.lab.effects.effect import Effect
+from compensator.lab.model.held_out_error import LEAST_OF_EFFORT
 from compensator.lab.screening.evidence import VERY_STRONG
 
 SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
 SLIGHT_PART = 0.05  # of what effects that were added explain, root mean square: a formula is rarely right to more
 LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
-LEAST_GAIN_NEAR_REVERSALS = 0.05  # where every measuring chain leaves a little that looks like memory
-LEAST_EXPLAINED = 5e-4  # of the effort, root mean square, on held-out rows: less than any sensor is linear
+LEAST_GAIN_OF_CHAIN = 0.05  # every measuring chain is a little late, and leaves a little near reversals
 
 
 def is_confirmed(candidate: Candidate) -> bool:
@@ -29,7 +27,7 @@ def is_confirmed(candidate: Candidate) -> bool:
 
 def is_sure(candidate: Candidate) -> bool:
     """Whether a candidate is confirmed but for the size and sign that it would need."""
-    return not doubts(replace(candidate, physical=True))
+    return not doubts(replace(candidate, physical=True, refused=""))
 
 
 def doubts(candidate: Candidate) -> list[str]:
@@ -37,16 +35,17 @@ def doubts(candidate: Candidate) -> list[str]:
     strong = candidate.score >= VERY_STRONG
     before, gain = candidate.before, candidate.gain
     explained = before**2 * (1.0 - (1.0 - gain.value) ** 2)
-    least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
+    chain = bool(candidate.effect.standing_in) or candidate.effect.rows != "sliding"
+    least = LEAST_GAIN_OF_CHAIN if chain else LEAST_GAIN
     asked = {
         "score not above 0": candidate.score > 0.0,
         "may be luck": candidate.p_value <= SIGNIFICANT or strong,
-        f"explains under {LEAST_EXPLAINED:.2%} of the effort": explained >= LEAST_EXPLAINED**2,
+        f"explains under {LEAST_OF_EFFORT:.2%} of the effort": explained >= LEAST_OF_EFFORT**2,
         f"gain under {least:.1%}": gain.value >= least,
         "gain not sure": gain.low > 0.0 or (strong and candidate.rows == "sliding"),
         "impossible size, sign or shape": candidate.physical,
     }
-    return [doubt for doubt, holds in asked.items() if not holds]
+    return [doubt for doubt, holds in asked.items() if not holds] + ([candidate.refused] if candidate.refused else [])
 
 
 def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:
@@ -63,14 +62,9 @@ def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:
     if diagnosis.verdict != "missing" or not diagnosis.classes:
         return None
     one = next((each for each in diagnosis.candidates if each.effect.name == diagnosis.classes[0][0]), None)
-    if one is None or one.gain.high >= SLIGHT_GAIN or _opens_others(one.effect):
+    if one is None or one.gain.high >= SLIGHT_GAIN:
         return None
     return one if explained_part(one.before, one.after) < SLIGHT_PART * explained else None
-
-
-def _opens_others(effect: Effect) -> bool:
-    """Whether it is of the measuring chain, and others cannot be judged before it is in the model, as a filter."""
-    return effect.pipeline and any(effect.name in other.after for other in catalogue().values())
 
 
 def explained_part(before: float, after: float) -> float:

@@ -5,21 +5,19 @@ from scipy.stats import spearmanr
 
 from compensator.lab.diagnosis.alien_effort import alien_effort
 from compensator.lab.left_over.bursts import some_of
-from compensator.lab.left_over.orders import LEAST_OF_EFFORT
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.held_out_error import rms
+from compensator.lab.model.held_out_error import LEAST_OF_EFFORT, rms
 from compensator.lab.model.linear import solve, solve_without
 from compensator.lab.recordings.processing import SATURATED_DUTY
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.recordings.stuck_sensor import stuck_positions
-from compensator.lab.rows.dataset import Dataset
+from compensator.lab.rows.dataset import FEWEST_ROWS, Dataset
 
 ODD_TRIAL_FACTOR = 4.0  # times the median trial's error
 FEWEST_TRIALS_TO_COMPARE = 5
 SATURATED_SHARE = 0.2
 MIRRORED = 0.5  # of the error of one trial: what turning the sign of its effort must bring
 UNLIKE = 2.0  # times what the median of the other trials leaves: less is what the model leaves anywhere
-FEWEST_ROWS = 20  # of a trial whose sign is judged
 FEWEST_ROWS_OF_ODD = 5  # of a trial: an error of four times the others' is no chance in so many
 TENFOLD = 10.0  # what loads seem to weigh of what they are said to, or the reverse: more is another unit
 WORSE = 1.5  # times the error that the loads as told leave, for that to be sure

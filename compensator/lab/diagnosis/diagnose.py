@@ -22,6 +22,7 @@ from compensator.lab.diagnosis.wording import problem_in_words
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
+from compensator.lab.left_over.orders import with_found_order
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
@@ -86,7 +87,7 @@ def _diagnosed(fit: Fit) -> Diagnosis:
 def best_named(fit: Fit, show_in: MotionRows) -> str | None:
     """The effect of one family that the rows speak for most, by score alone; None where none can be judged."""
     rows = fit.dataset.choice_for([effect for effect in catalogue().values() if effect.rows == show_in])
-    gathered = gather(widened(fit, rows), show_in)
+    gathered = with_found_order(gather(widened(fit, rows), show_in))
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
     screening = screen(gathered.bases, blocks, fit.dataset.block_index[gathered.rows])
     return screening.evidence[0].block.name if screening.evidence else None

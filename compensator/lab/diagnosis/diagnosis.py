@@ -42,6 +42,7 @@ class Candidate:
         gain: relative fall of that error, rows counting by how well the other trials can predict them.
         physical: all its coefficients lie within their physical bounds when fitted freely.
         picture: why.
+        refused: why it is not the answer though its own numbers confirm it; empty where nothing speaks against it.
         rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
     """
 
@@ -57,6 +58,7 @@ class Candidate:
     physical: bool
     picture: Picture | None
     rows: EffectRows = "sliding"
+    refused: str = ""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from compensator.lab.diagnosis.physical import is_physical
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import MotionRows
-from compensator.lab.model.fit import fit_sliding, with_effect
+from compensator.lab.model.fit import fit_effects, fit_sliding, with_effect
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut
@@ -19,7 +19,7 @@ from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import determination
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Evidence, Screening, kept_evidence, new_directions
+from compensator.lab.screening.evidence import VERY_STRONG, Evidence, Screening, kept_evidence, new_directions
 
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
@@ -36,7 +36,10 @@ def best_shapes(screening: Screening) -> list[Evidence]:
 
 
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:
-    """Candidates for the best shape of each effect: those that are confirmed, then the rest; each by score."""
+    """Candidates for the best shape of each effect: those that are confirmed, then the rest; each by score.
+
+    Of those that are confirmed, one with about as much evidence that predicts other trials better for sure goes first.
+    """
     before = _held_out(fit, gathered.show_in)
     sliding = None if gathered.show_in == "sliding" else fit_sliding(fit.dataset, fit.names, fit.training, fit.shapes)
     fits = [with_effect(fit, item.block.name, item.block.shape, sliding) for item in progress.each(evidence)]
@@ -45,13 +48,26 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     blocks = [block for block in gathered.named if block.name in asked]
     given = [kept_evidence(gathered.with_block(item.block).bases, blocks, gathered.noise) for item in evidence]
     spans = _spans(gathered)
-    candidates = []
-    for index, (item, after) in enumerate(zip(evidence, afters, strict=True)):
+    found: list[Candidate] = []
+    for index, item in enumerate(evidence):
         alike = _alike(item, spans)
         possible = [other for other in evidence if is_physical(gathered, other)]
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, possible, alike)}
-        candidates.append(_candidate(gathered, item, (before, after), rivals, max(alike.values(), default=0.0)))
-    return sorted(candidates, key=lambda one: not is_confirmed(one))  # stable: by score within each kind
+        candidate = _candidate(gathered, item, (before, afters[index]), rivals, max(alike.values(), default=0.0))
+        if candidate.score >= VERY_STRONG and candidate.physical and not is_confirmed(candidate):
+            # a shape of the model may have taken what it explains, as a Stribeck curve of a high speed takes drag
+            explained = fit_effects(fit.dataset, [*fit.names, item.block.name], fit.training)
+            afters[index] = _held_out(explained, gathered.show_in)
+            candidate = as_in_the_ladder(candidate, fit, explained, gathered.show_in)
+        found.append(candidate)
+    confirmed = [index for index, one in enumerate(found) if is_confirmed(one)]
+    best = confirmed[0] if confirmed else None
+    for index in confirmed[1:]:
+        enough = evidence[index].noncentrality >= share_of(gathered.show_in) * evidence[confirmed[0]].noncentrality
+        if best is not None and enough and predicts_better(afters[index], afters[best]):
+            best = index
+    order = sorted(range(len(found)), key=lambda one: (one != best, one not in confirmed))  # stable: by score
+    return [found[index] for index in order]
 
 
 def _explains(kept: dict[str, float], other: Evidence) -> bool:

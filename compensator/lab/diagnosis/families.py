@@ -1,6 +1,6 @@
 """What one family of effects has to say: its best effect, confirmed or not, or a curve that none of them follows."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -83,10 +83,11 @@ class _Family:
         found = unfollowed(self.fit, self.gathered, generic, self.examined, self.best)
         if found is None:
             return None
-        curve, p_value = found
+        curve, p_value, gain = found
         driver = curve.block.name
         sentence = answer_in_words("unknown-effect", p_value, self.examined, driver)
-        return Answer("unknown-effect", sentence, p_value, self.examined, driver, [], curve.noncentrality, remains=True)
+        strength = curve.noncentrality
+        return Answer("unknown-effect", sentence, p_value, self.examined, driver, [], strength, gain=gain, remains=True)
 
     def name(self) -> Answer | None:
         """The effect that is missing; None where none is confirmed.
@@ -94,23 +95,33 @@ class _Family:
         It is the first that holds in the model that would be had: what turns out there to be more, or less, than it can
         be leaves its place to the next.
         """
-        return next((answer for one in self.examined if (answer := self._named(one)) is not None), None)
+        for index, one in enumerate(self.examined):
+            found = self._named(one)
+            if isinstance(found, Answer):
+                return found
+            self.examined[index] = replace(one, refused=found)
+        return None
 
-    def _named(self, candidate: Candidate) -> Answer | None:
-        """The answer that a candidate is; None where it is not sure, or does not hold."""
+    def _named(self, candidate: Candidate) -> Answer | str:
+        """The answer that a candidate is; else what speaks against it beside its own numbers."""
         fit, show_in, best = self.fit, self.gathered.show_in, self.evidence_of(candidate)
         own_chance = self._chance_of(candidate)
-        if own_chance > SIGNIFICANT or self._is_shadow(best) or not is_confirmed(candidate):
-            return None
+        if not is_confirmed(candidate):
+            return ""
+        if own_chance > SIGNIFICANT:
+            return "may be luck among all that was tried"
+        if self._is_shadow(best):
+            return f"explains much less than {self.most.block.name}, which cannot be it"
         explained = fit_effects(fit.dataset, [*fit.names, candidate.effect.name], fit.training)
         first = as_in_the_ladder(candidate, fit, explained, show_in)
         if not _holds(explained, first):
-            return None
+            return "not so in the model with all shapes found anew"
         examined = [first, *(one for one in self.examined if one is not candidate)]
         sentence = answer_in_words("missing", own_chance, examined, None)
         notes = what_remains(explained, self.gathered, candidate.effect.name)
         strength, remains = best.noncentrality, bool(notes)
-        return Answer("missing", sentence, own_chance, examined, None, notes, strength, remains, explained, best)
+        gain = first.gain.value
+        return Answer("missing", sentence, own_chance, examined, None, notes, strength, gain, remains, explained, best)
 
     def _chance_of(self, candidate: Candidate) -> float:
         """The chance of the effect that is to be named, if any of its family is no luck."""
@@ -130,7 +141,8 @@ class _Family:
         ranked = [bends, *(one for one in self.examined if one is not bends)]
         sentence = bending_in_words(bends, too_far, self.fit.dataset.facts, self.p_value)
         driver, strength = bends.effect.driver, self.most.noncentrality
-        return Answer("unknown-effect", sentence, self.p_value, ranked, driver, [], strength, remains=True)
+        gain = bends.gain.value
+        return Answer("unknown-effect", sentence, self.p_value, ranked, driver, [], strength, gain, remains=True)
 
     def _bends(self) -> tuple[Candidate, bool] | None:
         """What explains most, for sure, but cannot be the friction in whose place it stands: a part, or too far."""

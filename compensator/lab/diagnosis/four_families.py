@@ -12,7 +12,9 @@ from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
+from compensator.lab.left_over.orders import with_found_order
 from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import predicts_better
@@ -67,7 +69,7 @@ class FourFamilies:
     def first(self) -> Answer:
         """The answer: that of the first family with one, but for a memory effect that predicts motion better."""
         first = _first_of(self.in_order)
-        if first is self.steady and self.memory is not None and _predicts_motion_better(self.memory, first):
+        if first is self.steady and self.memory is not None and _predicts_better(self.memory, first, "moving"):
             return self.memory
         return first
 
@@ -79,7 +81,7 @@ def judged(fit: Fit) -> FourFamilies:
         UnusableDataError: no candidate can be judged on these trials.
     """
     progress.enter(COLUMNS)
-    gathered = with_noise(gather(fit))
+    gathered = with_noise(with_found_order(gather(fit)))
     physical = [block for block in gathered.named if not effect_named(block.name).pipeline]
     pipeline = [block for block in gathered.named if effect_named(block.name).pipeline]
     if not physical:
@@ -115,24 +117,34 @@ def _memory_of(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
     return answer_of(wide, gathered, screening, None), gathered.left_out
 
 
-def _predicts_motion_better(one: Answer, other: Answer) -> bool:
-    """Whether one family's name predicts rows in motion better than another's: its gain is above zero for sure."""
+def _predicts_better(one: Answer, other: Answer, rows: MotionRows) -> bool:
+    """Whether one family's name predicts rows better than another's: its gain is above zero for sure."""
     if one.explained is None or other.explained is None:
         return False
-    errors = [held_out(widened(fit, "moving"), "moving") for fit in (one.explained, other.explained)]
+    errors = [held_out(widened(fit, rows), rows) for fit in (one.explained, other.explained)]
     return predicts_better(*errors)
 
 
 def _first_of(families: list[Answer]) -> Answer:
-    """The first family with an answer; a curve that no effect follows, unless another family explains it."""
-    steady = families[0]
-    if steady.verdict == "nothing":
-        return next((answer for answer in families if answer.verdict != "nothing"), steady)
-    if steady.verdict == "missing":
-        chain = families[-1]
-        return chain if chain.verdict == "missing" and _explains_more(chain, steady) else steady
-    enough = FORMULA_SHARE * steady.strength
-    return next((a for a in families[1:] if a.verdict != "nothing" and a.strength >= enough), steady)
+    """The first family with an answer, unless the measuring chain, or another family, explains what it is better.
+
+    A curve that no effect follows gives way to an effect of the chain that explains more, and to a family that is
+    about as sure; a name of steady sliding to one of the chain that has more evidence, and predicts better for sure.
+    """
+    steady, chain = families[0], families[-1]
+    first = next((answer for answer in families if answer.verdict != "nothing"), steady)
+    unknown = first.verdict == "unknown-effect"
+    if unknown and chain.verdict == "missing" and chain.gain > first.gain and _is_about_as_sure(chain, first):
+        return chain
+    if first is steady and chain.strength > steady.strength and _predicts_better(chain, steady, "sliding"):
+        return chain
+    if first is not steady or not unknown:
+        return first
+    return next((a for a in families[1:] if a.verdict != "nothing" and _is_about_as_sure(a, steady)), steady)
+
+
+def _is_about_as_sure(one: Answer, steady: Answer) -> bool:
+    return one.strength >= FORMULA_SHARE * steady.strength
 
 
 def _least_p(screening: Screening) -> dict[str, float]:
@@ -142,8 +154,3 @@ def _least_p(screening: Screening) -> dict[str, float]:
         p_value = min(1.0, item.block.scanned * item.p_value)
         found[item.block.name] = min(found.get(item.block.name, 1.0), p_value)
     return found
-
-
-def _explains_more(one: Answer, other: Answer) -> bool:
-    """Whether one family's best effect has more evidence, and leaves less, than another's on the same rows."""
-    return one.strength > other.strength and one.candidates[0].gain.value > other.candidates[0].gain.value

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
+from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import HeldOut, relative_error
 from compensator.lab.recordings.recording import BoolArray, FloatArray
+from compensator.lab.rows.dataset import FEWEST_ROWS
 from compensator.lab.screening.evidence import inflation_of
 
-FEWEST_ROWS = 20  # of a trial
-CHANCE = 0.01  # of so much scatter where it is one and the same
 LEAST_SHARE = 0.01  # of Coulomb friction
 
 DRY_FRICTION, CONSTANT = "Dry friction", "A constant force, or the zero of the effort,"
@@ -100,7 +100,7 @@ def _by_run(
     differences, errors = np.array(own).T
     scatter = float(np.sqrt(max(np.mean(differences**2 - errors**2), 0.0)))
     chance = float(chi2.sf(np.sum((differences / errors) ** 2), len(own)))
-    if chance > CHANCE or scatter < LEAST_SHARE * coulomb:
+    if chance > SIGNIFICANT or scatter < LEAST_SHARE * coulomb:
         return None
     index, left = fit.dataset.trial_index[judged.rows], judged.residual.copy()
     for label, difference in zip(labels, differences, strict=True):

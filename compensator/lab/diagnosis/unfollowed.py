@@ -33,8 +33,8 @@ from compensator.lab.screening.evidence import Evidence, Screening, among_all, s
 
 def unfollowed(
     fit: Fit, gathered: Candidates, generic: Screening, examined: list[Candidate], best: Evidence
-) -> tuple[Evidence, float] | None:
-    """The free curve, or the free hysteresis, that no formula follows, and its chance; None where all are followed.
+) -> tuple[Evidence, float, float] | None:
+    """The free curve, or hysteresis, that no formula follows, its chance, and its gain; None where all are followed.
 
     Args:
         fit: the model.
@@ -44,13 +44,13 @@ def unfollowed(
         best: the evidence for the first of them.
     """
     found = []
-    spline, bent = _curve(fit, gathered, generic), bending(fit, gathered)
-    if spline is not None and not (
-        _follows(best, examined[0], spline) or _leaves_nothing(gathered, examined[0], best, spline)
+    curve, bent = _curve(fit, gathered, generic), bending(fit, gathered)
+    if curve is not None and not (
+        _follows(best, examined[0], curve[0]) or _leaves_nothing(gathered, examined[0], best, curve[0])
     ):
-        found.append((spline, among_all(generic.p_value)))
+        found.append((curve[0], among_all(generic.p_value), curve[1]))
     if bent is not None and (not _follows(best, examined[0], bent.evidence) or bent.predicts_best(fit, examined)):
-        found.append((bent.evidence, among_all(bent.evidence.p_value)))
+        found.append((bent.evidence, among_all(bent.evidence.p_value), bent.gain))
     return max(found, key=lambda one: one[0].noncentrality, default=None)
 
 
@@ -71,8 +71,8 @@ def _leaves_nothing(gathered: Candidates, candidate: Candidate, best: Evidence, 
     return score_of(given.bases, curve.block, given.noise) <= 0.0
 
 
-def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> Evidence | None:
-    """The free curve with the best evidence, if that is no luck and the curve is of use on other trials for sure.
+def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> tuple[Evidence, float] | None:
+    """The free curve with the best evidence, and its gain, if that is no luck and it helps on other trials for sure.
 
     A curve has more coefficients than a formula: every chain bends a little of what it measures.
     """
@@ -84,7 +84,7 @@ def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> Evidence | Non
     with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
     known = determination(fit)
     gain = held_out_gain(held_out(fit, None, known), held_out(with_curve, None, known))
-    return best if gain.low >= LEAST_GAIN else None
+    return (best, gain.value) if gain.low >= LEAST_GAIN else None
 
 
 @dataclass(frozen=True)

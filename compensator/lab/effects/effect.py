@@ -14,6 +14,7 @@ from compensator.lab.recordings.reversals import Strokes, since_rest, strokes_of
 Shape = tuple[float, ...]
 MotionRows = Literal["sliding", "moving"]
 EffectRows = Literal[MotionRows, "breakaway"]
+Round = Literal["force", "against the motion"]
 MOST_TURNS = (
     10.0  # over all trials: beyond, nothing winds up with the shaft, and its position is the time it has turned
 )
@@ -38,6 +39,8 @@ class Motion:
         predicted, effort_rate: predicted effort, all of it, and its rate of change.
         largest_effort: predicted, of all trials; 0 before anything is predicted.
         bend: what effects of the model with a `slope` add for each unit of effort that is predicted more.
+        back_emf: effort per velocity that drives no current: of a voltage, where the constant is told; else 0.
+        late_s: by how much the position is older than the effort, as far as the model says.
         doubt: by how much these may be wrong for what teeth do in known free play, in the measure of `bend`.
         temperature_c, supply_v: NaN where not measured.
         position_span: range of position over all trials of the study.
@@ -74,6 +77,8 @@ class Motion:
     slow: float
     fast: float
     doubt: FloatArray | float = 0.0
+    late_s: float = 0.0
+    back_emf: float = 0.0
     load_inertia: float = 0.0
     misread_acceleration: FloatArray | float = 0.0
     measured_load: FloatArray | float = np.nan
@@ -115,6 +120,12 @@ class Motion:
     def step_s(self) -> float:
         """Time from sample to sample [s]; 0 of a single moment."""
         return float(self.time_s[1] - self.time_s[0]) if len(self.time_s) > 1 else 0.0
+
+    @property
+    def driven(self) -> FloatArray:
+        """Predicted effort in proportion to the motor's current: of a voltage, what is not back-EMF; shape (n,)."""
+        found: FloatArray = self.predicted - self.back_emf * self.velocity
+        return found
 
     def averaged(self, order: float) -> FloatArray:
         """What an average over one sample leaves of a ripple of an order [rad per unit of position], shape (n,).
@@ -282,6 +293,8 @@ class Effect:
         after: effects that a model must have before this one can be missing.
         grows: its shape is a list of orders, 0 for none; each further one is taken as long as the rows pay for it.
         by_position: it goes by the position itself, which a shaft that turns on and on does not have.
+        goes_round: its shape is an order of the position, as a force or against the motion: one that its shapes lack
+            is found where no gear ratio tells which these are; None: it has no such shape.
         told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
         holds: shape that it takes in a model -> whether that is this effect still; None: any is.
         ends_within_scan: so many of the shape's first values end within the scan: what fits best at an upper end goes
@@ -327,6 +340,7 @@ class Effect:
     looked_for: bool = True
     after: tuple[str, ...] = ()
     grows: bool = False
+    goes_round: Round | None = None
     told: Callable[[Facts, Shape], bool] = _nothing_told
 
     def grid(self, motions: Sequence[Motion]) -> list[Shape]:

@@ -13,13 +13,12 @@ from scipy.signal import sosfreqz
 from compensator.lab.model.weights import bounded_influence
 from compensator.lab.recordings.low_pass import filter_sections
 from compensator.lab.recordings.recording import BoolArray, FloatArray
-from compensator.lab.rows.dataset import Dataset, Trial
+from compensator.lab.rows.dataset import FEWEST_ROWS, Dataset, Trial
 
 BANDS = (0.0, 0.25, 0.5, 0.9)  # of the cut-off: the motion's, a gap, and the noise's
 DENSER = 2.0  # in the motion's band than above: what coloured noise does not reach
 SURE = 3.0  # standard deviations of that ratio's logarithm
 LEAST_SHARE = 0.01  # of the effort: by so much friction differs from one stroke to the next without any cause
-FEWEST_ROWS = 20
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,21 +19,18 @@ import numpy as np
 
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.lines import MOST_GAIN, TINY, WIDTH, chance_over_noise, is_peak, over_noise
-from compensator.lab.left_over.waves import Waves
+from compensator.lab.model.order_search import AT_ONCE, explained
 from compensator.lab.recordings.recording import FloatArray, IntArray
-from compensator.lab.rows.dataset import Trial
+from compensator.lab.rows.dataset import FEWEST_ROWS, Trial
 from compensator.lab.screening.base import Base
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 
 LEAST_HZ = 0.25  # what is slower turns less than once in a trial of some seconds
 BAND = 0.9  # of the cut-off
 REACH_HZ = (0.3, 1.0)  # of a line in a trial of some seconds, and of noise that is smooth
-FEWEST_ROWS = 20
 FEWEST_TRIALS = 4
 ALIKE = 0.9  # correlation of two trials' velocities: of one motion
 MOMENTS = 200  # of a trial, at which that is looked at
-AT_ONCE = 2**21  # values of columns
-NEW = 0.05  # share of a column's power beside the model: of less, little can be told from the model itself
 LEAST_SHARE = 1e-3  # of what counts most: what counts less is left out
 
 Indices = np.ndarray[tuple[int], np.dtype[np.intp]]
@@ -168,13 +165,7 @@ def _gains(base: Base, carrier: FloatArray, time_s: FloatArray, at_hz: FloatArra
     """What each trial gains by each frequency (m,), shape (trials, m)."""
     phase = 2.0 * np.pi * np.outer(time_s, at_hz)
     columns = carrier[:, None] * np.concatenate([np.cos(phase), np.sin(phase)], axis=1)
-    return np.array([_gained(columns[own], base.basis[own], base.residual[own]) for own in trials])
-
-
-def _gained(columns: FloatArray, basis: FloatArray, residual: FloatArray) -> FloatArray:
-    """By cosines and sines (n, 2m) of one trial, beside what the model explains; 0 where they are not apart from it."""
-    waves = Waves.of(columns, basis, residual)
-    return waves.where(waves.left.sum(axis=0) > NEW * waves.whole.sum(axis=0))
+    return np.array([explained(columns[own], base.basis[own], base.residual[own]) for own in trials])
 
 
 def _voltage_of(trial: Trial) -> FloatArray:

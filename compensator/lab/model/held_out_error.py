@@ -9,6 +9,8 @@ from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 
 HeldOutKind = Literal["hold-out", "leave-one-trial-out", "leave-one-block-out"]
 
+LEAST_OF_EFFORT = 5e-4  # of the effort, root mean square: no sensor is more linear
+
 
 @dataclass(frozen=True)
 class HeldOut:

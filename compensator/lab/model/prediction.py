@@ -45,12 +45,17 @@ def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
     inertia = beyond if dataset.facts.arm_inertia_kg_m2 else whole
     driven = carried + dataset.at_samples(inertia) * acceleration
     parting = driven / dataset.at_samples(np.where(inertia == 0.0, np.inf, inertia))
-    dataset = dataset.with_prediction(load, total, parting, np.stack([inertia, whole, of_load]))
+    dataset = dataset.with_prediction(load, total, parting, np.stack([inertia, whole, of_load]), _late_s(terms))
     steep = [term for term in terms if term.effect.slope is not None and np.any(term.coefficients)]
     if not steep:
         return dataset
     motions = [trial.motion for trial in dataset.trials]
     return dataset.with_bend([_bend(steep, one) for one in motions], [_doubt(steep, one) for one in motions])
+
+
+def _late_s(terms: Sequence[Term]) -> float:
+    """By how much the position is older than the effort."""
+    return next((float(term.coefficients[0]) for term in terms if term.effect.name == "measurement_delay"), 0.0)
 
 
 def beyond_tangent(dataset: Dataset, terms: Sequence[Term], index: int, coefficients: FloatArray) -> FloatArray:

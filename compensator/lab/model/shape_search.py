@@ -11,6 +11,7 @@ from scipy.optimize import minimize
 
 from compensator.lab.effects.effect import Effect, Shape
 from compensator.lab.model.linear import orthonormal
+from compensator.lab.model.order_search import Path
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.rows.dataset import Dataset
 
@@ -82,9 +83,25 @@ class _Search:
         return float(shares @ shares)
 
     def scan(self) -> Shape:
-        """The best shape of the effect's grid."""
+        """The best shape of the effect's grid, or an order beyond it where nobody tells which there can be."""
         powers = [self.explained(columns) for columns in self._columns()]
-        return self._grid[int(np.argmax(powers))]
+        best = int(np.argmax(powers))
+        beyond = self._beyond_grid()
+        if beyond is not None and self.explained(self._dataset.columns(self._effect, beyond)) > powers[best]:
+            return beyond
+        return self._grid[best]
+
+    def _beyond_grid(self) -> Shape | None:
+        """The order above the grid's that explains most; None where the gear ratio is known, or no row shows one."""
+        kind = self._effect.goes_round
+        if kind is None or self._dataset.facts.gear_ratio is not None:
+            return None
+        path = Path.of(self._dataset, self._rows, self._weight[:, 0])
+        orders = path.orders[path.orders > max(self._grid)[0]]
+        if not len(orders):
+            return None
+        best = float(orders[np.argmax(path.scanned(self._basis, self._rest, orders, (kind,))[kind])])
+        return (path.refined(self._basis, self._rest, best, kind),)
 
     def grow(self) -> Shape:
         """One order after the other, each the best beside those before it, while the rows pay for it (BIC)."""

@@ -23,6 +23,7 @@ class Facts:
         joint: "rotary" (rad, N m) or "linear" (m, N).
         horizontal: gravity does no work on the joint.
         torque_per_current_n_m_a: joint torque per motor ampere, torque constant x gear ratio [N m/A].
+        back_emf_v_s_rad: of the motor for each rad/s of the joint, back-EMF constant x gear ratio.
         gear_ratio: motor turns per joint turn.
         backlash_rad: free play at the joint; 0 where there is none, None where nobody measured it.
         stiffness_n_m_rad: torsional, of what drives the arm; None where nobody told.
@@ -37,6 +38,7 @@ class Facts:
     joint: Literal["rotary", "linear"] = "rotary"
     horizontal: bool = False
     torque_per_current_n_m_a: float | None = None
+    back_emf_v_s_rad: float | None = None
     gear_ratio: float | None = None
     backlash_rad: float | None = None
     stiffness_n_m_rad: float | None = None

@@ -25,6 +25,15 @@ AT_ONCE = 2**18  # values at the full rate that are filtered at once: what a pro
 SIDE_BY_SIDE = 32  # columns that are filtered at once, at least
 EFFORT: tuple[str, Shape] = ("the effort itself", ())  # kept: the same whatever is predicted or misread
 BLOCK_S = 2.0  # rows closer than this are not independent
+FEWEST_ROWS = 20  # of a trial that is judged by itself
+UNTOLD = {
+    "gear_ratio": "needs the gear ratio, which the rig does not tell; put [gear] ratio into rig.toml",
+    "supply_is_nominal": (
+        "cannot hide behind a supply voltage that is measured; if nobody measured it, put [supply] is_nominal = true "
+        "into rig.toml"
+    ),
+}
+"""Facts that effects need -> what is to be said where they are not told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -292,7 +301,12 @@ class Dataset:
         return np.concatenate([rows[trial.picked] for trial, rows in zip(self.trials, full_rate, strict=True)])
 
     def with_prediction(
-        self, load_effort: FloatArray, predicted: FloatArray, parting: FloatArray, inertias: FloatArray
+        self,
+        load_effort: FloatArray,
+        predicted: FloatArray,
+        parting: FloatArray,
+        inertias: FloatArray,
+        late_s: float = 0.0,
     ) -> "Dataset":
         """The same rows, with the predicted load and effort in every trial's motion.
 
@@ -301,6 +315,7 @@ class Dataset:
             predicted: the same.
             parting: the same.
             inertias: `inertia_beyond`, `inertia` and `load_inertia` of each trial's motion, shape (3, trials).
+            late_s: of every trial's motion.
         """
         largest, nothing = float(np.abs(predicted).max(initial=0.0)), np.zeros(len(predicted))
         trials = tuple(
@@ -318,6 +333,7 @@ class Dataset:
                     largest_effort=largest,
                     bend=nothing[own],
                     doubt=0.0,
+                    late_s=late_s,
                 ),
             )
             for trial, own, (beyond, whole, tip) in zip(self.trials, self.samples, inertias.T.tolist(), strict=True)
@@ -371,9 +387,7 @@ class Dataset:
             )
         for fact in effect.facts:
             if getattr(self.facts, fact) is None:
-                raise NotApplicableError(
-                    f"{effect.name} needs {fact}, which the rig does not tell; put it into rig.toml"
-                )
+                raise NotApplicableError(f"{effect.name} {UNTOLD[fact]}")
         for channel in effect.channels:
             if not all(channel in trial.signals.recording.channels for trial in self.trials):
                 raise NotApplicableError(f"{effect.name} needs channel {channel} in every trial; record it")

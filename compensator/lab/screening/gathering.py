@@ -20,8 +20,6 @@ from compensator.lab.screening.evidence import most_likely, score_of
 from compensator.lab.screening.generic import driver_blocks, hysteresis_columns
 from compensator.lab.screening.nuisance import nuisance_columns
 
-CLEARED = 2  # blocks, or free curves, that are taken off at most: what is missing must not count as noise
-
 
 def gather(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
     """Collect candidates for a fitted model: training rows, weighted, on top of model and nuisance columns.
@@ -111,20 +109,15 @@ def _hidden(effect: Effect, hiding: list[str]) -> str:
 
 
 def with_noise(gathered: Candidates) -> Candidates:
-    """The same candidates, evened by the noise of what is left once the likeliest blocks are in the model.
+    """The same candidates, evened by the noise of what is left once the likeliest block is in the model.
 
-    Of the joint's blocks alone: what the measuring chain does badly is noise to whoever asks what the joint lacks.
-    A block is taken off only where it pays against the noise as it is known so far, with its colour: held against white
-    noise, slow blocks seem to pay wherever noise is slow.
+    What is missing must not count as noise. Of the joint's blocks alone: what the measuring chain does badly is noise
+    to whoever asks what the joint lacks. A block is taken off only where it pays against the noise as it is known so
+    far, with its colour: held against white noise, slow blocks seem to pay wherever noise is slow.
     """
-    left, noise = gathered, noise_of(gathered, gathered)
+    noise = noise_of(gathered, gathered)
     joint = [block for block in gathered.named if block.name not in chain_effects()]
-    for _ in range(CLEARED):
-        block = most_likely(left.bases, [*joint, *left.curves.blocks])
-        if block is None:
-            break
-        if score_of(left.bases, block, noise) <= 0.0:
-            break
-        left = left.with_block(block)
-        noise = noise_of(gathered, left)
+    block = most_likely(gathered.bases, [*joint, *gathered.curves.blocks])
+    if block is not None and score_of(gathered.bases, block, noise) > 0.0:
+        noise = noise_of(gathered, gathered.with_block(block))
     return gathered.evened(noise)

@@ -19,14 +19,12 @@ from scipy.fft import next_fast_len
 from scipy.stats import f as fisher
 
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
-from compensator.lab.rows.dataset import Dataset
+from compensator.lab.rows.dataset import BLOCK_S, FEWEST_ROWS, Dataset
 from compensator.lab.screening.stops import StopToStop
 
 ComplexArray = NDArray[np.complex128]
 
-MEMORY_S = 2.0  # beyond which residuals are taken to be independent, as stretches are
 SPEEDS = 3  # kinds of rows, slow to fast, as many of each
-SHRINK_ROWS = 20  # a trial's own scale is drawn to that of all by so many rows
 STEADIEST = 0.5  # share of the noise, at any frequency, that is left to what does not last a stroke: both look alike
 PASSES = 3  # of learning what a fit takes from the noise
 DRAWS = 9999
@@ -71,7 +69,7 @@ class Noise:
     Attributes:
         places: of the trials.
         autocovariances: of each speed, by lag in rows, tapered to zero (Parzen), shape (SPEEDS, lags).
-        known_from: independent stretches of MEMORY_S, less one: how well the noise is known.
+        known_from: independent stretches of BLOCK_S, less one: how well the noise is known.
         outweighed: what is missing is larger than the noise, so that what a formula leaves of it tells formulas apart
             better than the noise does.
         strokes: between stops; None where static friction is not in the model.
@@ -253,7 +251,7 @@ def strength(share: FloatArray, covariance: FloatArray) -> float:
 
 
 def _places(dataset: Dataset, rows: BoolArray, residual: FloatArray) -> tuple[list[_Place], int]:
-    """Places of the chosen rows, and how many rows MEMORY_S is at most."""
+    """Places of the chosen rows, and how many rows BLOCK_S is at most."""
     velocity = np.abs(dataset.rows_of([trial.motion.velocity for trial in dataset.trials])[rows])
     speed = np.searchsorted(np.quantile(velocity, np.arange(1, SPEEDS) / SPEEDS), velocity)
     overall = _power_by_kind(residual, speed) / np.maximum(np.bincount(speed, minlength=SPEEDS), 1)
@@ -261,7 +259,7 @@ def _places(dataset: Dataset, rows: BoolArray, residual: FloatArray) -> tuple[li
     for index, trial in enumerate(dataset.trials):
         times_s = dataset.time_of(trial)
         period_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else 1.0
-        longest = max(longest, round(MEMORY_S / period_s))
+        longest = max(longest, round(BLOCK_S / period_s))
         chosen = rows[dataset.trial_index == index]
         if chosen.any():
             grid = np.round((times_s[chosen] - times_s[chosen][0]) / period_s).astype(np.int64)
@@ -289,7 +287,7 @@ def _power(residual: FloatArray, speed: IntArray, overall: FloatArray) -> FloatA
     """Of one trial's residual (n,) over that of all, by kind of row, drawn to 1; shape (SPEEDS,)."""
     known = np.where(overall > 0.0, overall, 1.0)
     count = np.bincount(speed, minlength=SPEEDS)
-    power: FloatArray = (_power_by_kind(residual, speed) / known + SHRINK_ROWS) / (count + SHRINK_ROWS)
+    power: FloatArray = (_power_by_kind(residual, speed) / known + FEWEST_ROWS) / (count + FEWEST_ROWS)
     return np.where(overall > 0.0, power, 1.0)
 
 

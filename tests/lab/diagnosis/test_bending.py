@@ -113,7 +113,7 @@ def free_hysteresis(fit: Fit) -> Bending:
     assert gathered.noise is not None
     evidence = screen_against_noise(gathered.bases, [gathered.curves.hysteresis], gathered.noise).evidence[0]
     model = with_columns(fit, evidence.block.name, gathered.curves.hysteresis_columns)
-    return Bending(evidence, held_out(model, None, fit.dataset.steadiness))
+    return Bending(evidence, held_out(model, None, fit.dataset.steadiness), 0.0)
 
 
 def test_it_predicts_best_where_no_formula_does_as_well(bent, found):

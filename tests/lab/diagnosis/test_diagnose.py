@@ -201,7 +201,7 @@ def test_a_delay_is_the_measuring_chains():
 
 
 def test_a_delay_beside_a_missing_effect_is_a_note():
-    made = recordings(Joint(extra=PLANTED["viscous_asymmetry"]), Bench(delay_s=0.004), seed=3)
+    made = recordings(Joint(extra=PLANTED["viscous_asymmetry"]), Bench(delay_s=0.008), seed=3)
     found = diagnosis_of(made)
     assert found.candidates[0].effect.name == "viscous_asymmetry"
     assert any("Measurement delay is missing" in note.text for note in found.notes)

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import families
+from compensator.lab.diagnosis import examination, families
+from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_effects, fit_model, widened
@@ -87,3 +88,15 @@ def test_what_does_not_hold_leaves_its_place_to_the_next(monkeypatch, extra, can
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
     answer = answer_of(fit, gathered, screen_against_noise(gathered.bases, blocks, gathered.noise), None)
     assert (answer.verdict, answer.candidates[0].effect.name) == (verdict, first)
+
+
+SPRUNG = Joint(extra=lambda x: 0.05 * x.q)
+
+
+def test_what_a_shape_of_the_model_has_taken_is_looked_for_with_all_shapes_anew(monkeypatch):
+    """With shapes that are held, its gain may be next to nothing, as that of drag beside a Stribeck curve of it."""
+    fit = fit_model(make_dataset(recordings(SPRUNG, seed=5), FACTS, Processing(8.0)), default_effects(FACTS))
+    monkeypatch.setattr(examination, "with_effect", lambda held, *_: held)
+    found = diagnose(fit)
+    assert (found.verdict, found.candidates[0].effect.name) == ("missing", "spring"), found.sentence
+    assert found.candidates[0].gain.value > 0.1

@@ -18,7 +18,7 @@ def named(name: str, strength: float, gain: float = 0.2) -> Answer:
     """An answer with a name, as far as other families look at it."""
     candidate: Any = SimpleNamespace(effect=effect_named(name), shape=(), gain=SimpleNamespace(value=gain))
     explained: Any = SimpleNamespace(names=(name,))
-    return Answer("missing", "", 0.001, [candidate], None, [], strength, explained=explained)
+    return Answer("missing", "", 0.001, [candidate], None, [], strength, gain, explained=explained)
 
 
 BACKLASH, COGGING = named("backlash", 40.0), named("cogging", 300.0)
@@ -28,17 +28,22 @@ ENCODER = named("encoder_eccentricity", 600.0, gain=0.3)
 @pytest.mark.parametrize(
     ("steady", "chain", "better", "first"),
     [
-        (NOTHING, NOTHING, False, "backlash"),
-        (COGGING, ENCODER, True, "encoder_eccentricity"),  # over cogging
-        (COGGING, NOTHING, True, "backlash"),  # however strongly cogging shows in sliding
-        (COGGING, NOTHING, False, "cogging"),
+        (NOTHING, NOTHING, {}, "backlash"),
+        (COGGING, ENCODER, {"encoder_eccentricity": "sliding"}, "encoder_eccentricity"),
+        (COGGING, ENCODER, {}, "cogging"),  # however strongly the chain's shows
+        (COGGING, replace(ENCODER, strength=200.0), {"encoder_eccentricity": "sliding"}, "cogging"),
+        (COGGING, NOTHING, {"backlash": "moving"}, "backlash"),  # however strongly cogging shows in sliding
+        (COGGING, NOTHING, {}, "cogging"),
     ],
 )
-def test_a_memory_effect_is_first_where_it_predicts_motion_better(monkeypatch, steady, chain, better, first):
-    errors = (("backlash", "moving", "moving"), ("cogging", "moving", "moving"))
+def test_another_family_is_first_where_it_predicts_better(monkeypatch, steady, chain, better, first):
     monkeypatch.setattr(four_families, "widened", lambda fit, rows: (fit.names[0], rows))
     monkeypatch.setattr(four_families, "held_out", lambda model, rows: (*model, rows))
-    monkeypatch.setattr(four_families, "predicts_better", lambda *of: of == errors and better)
+    monkeypatch.setattr(
+        four_families,
+        "predicts_better",
+        lambda one, other: other[0] == "cogging" and one[1] == one[2] == better.get(one[0]),
+    )
     judged = FourFamilies(steady, BACKLASH, None, chain, SimpleNamespace(), {})
     assert judged.first().candidates[0].effect.name == first
 

@@ -11,7 +11,6 @@ import pytest
 
 from bench.study.diagnosis.findings import conclusion_of
 from compensator.lab.diagnosis import search as search_module
-from compensator.lab.diagnosis.confirmation import slight_one
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.diagnosis.search import Search, search
@@ -75,16 +74,6 @@ def test_what_is_slight_beside_what_was_added_before_is_not_added(outset, added)
     small = replace(found.candidates[0], before=0.0106, after=0.0103, gain=Gain(0.03, 0.01, 0.06))
     first = replace(found, candidates=[small, *found.candidates[1:]])
     assert search(fit_of("spring", seed=7), most=1, first=first, outset=outset).added == added
-
-
-@pytest.mark.parametrize(("name", "slight"), [("cogging", True), ("measurement_delay", False)])
-def test_what_has_to_be_in_the_model_before_a_fault_of_the_chain_is_judged_is_never_slight(name, slight):
-    """A filter of the effort is judged beside a delay alone, and may take ten times as much."""
-    found = diagnosis_of(seed=7)
-    gain = Gain(0.03, 0.01, 0.06)
-    one = replace(found.candidates[0], effect=effect_named(name), before=0.0106, after=0.0103, gain=gain)
-    named = replace(found, verdict="missing", classes=((name,),), candidates=[one])
-    assert (slight_one(named, explained=0.1) is not None) == slight
 
 
 @pytest.mark.parametrize("there", [False, True])

@@ -278,3 +278,18 @@ def test_orders_of_a_linear_joint_are_cycles_over_its_travel():
     (first,), *_, (last,) = EFFECTS["position_periodic_friction"].shapes(motion("linear"))
     assert (first, last) == pytest.approx((np.pi, 30 * np.pi))
     assert EFFECTS["position_periodic_friction"].shapes(motion())[0] == (2.0,)
+
+
+CURRENT = ("winding_temperature", "torque_constant_saturation", "supply_sag", "dead_time")
+
+
+@pytest.mark.parametrize("name", CURRENT)
+def test_what_goes_by_the_current_leaves_out_the_back_emf_of_a_voltage(name):
+    effect, plain = EFFECTS[name], motion()
+    shape = effect.shapes(plain)[0] if effect.shape_names else ()
+    held = replace(plain, predicted=plain.predicted + 0.4 * plain.velocity, back_emf=0.4)
+    found, same, without = (effect.columns(one, shape) for one in (held, plain, replace(held, back_emf=0.0)))
+    if name == "supply_sag":  # the duty holds the back-EMF
+        same = same * (held.predicted / plain.predicted) ** 2
+    assert found == pytest.approx(same)
+    assert without != pytest.approx(same, rel=0.01)

@@ -7,8 +7,10 @@ import pytest
 from scipy.signal import lfilter
 
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.effects.catalogue import candidates, default_effects, effect_named
+from compensator.lab.diagnosis.search import search
+from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
@@ -48,9 +50,34 @@ def test_a_delay_alone_is_no_filter():
     assert found.verdict != "missing" or found.candidates[0].effect.name != "effort_filter", found.sentence
 
 
-def test_it_is_looked_for_once_a_delay_is_in_the_model():
-    assert "effort_filter" not in {one.name for one in candidates(default_effects(FACTS), FACTS)}
-    assert "effort_filter" in {one.name for one in candidates(MODEL, FACTS)}
+@pytest.mark.parametrize("time_constant_s", [0.02, 0.1])
+def test_it_is_found_without_a_delay_that_would_stand_for_a_part_of_it(time_constant_s):
+    made = [smoothed(one, time_constant_s) for one in recordings(seed=3)]
+    found = search(fit_model(make_dataset(made, FACTS, Processing(8.0)), default_effects(FACTS)))
+    assert found.added == ("effort_filter",)
+
+
+def late(delay_s: float) -> Fit:
+    """The plain model of recordings whose effort is late."""
+    made = []
+    for one in recordings(seed=4):
+        time_s, torque = one.channels["time_s"], one.channels["torque_n_m"]
+        made.append(replace(one, channels={**one.channels, "torque_n_m": np.interp(time_s - delay_s, time_s, torque)}))
+    return fit_model(make_dataset(made, FACTS, Processing(8.0)), default_effects(FACTS))
+
+
+def test_a_long_delay_is_taken_out_whole():
+    """To first order alone it would leave as much as a small effect does."""
+    kept, moved = late(0.0), late(0.03)
+    found = search(moved)
+    assert found.added == ("measurement_delay",)
+    assert found.fit.terms[-1].coefficients[0] == pytest.approx(-0.03, rel=0.1)
+    left, before = (np.std(fit.residual[fit.training]) for fit in (found.fit, kept))
+    assert left < 1.3 * before
+
+
+def test_a_part_of_a_sample_is_no_delay_that_is_missing():
+    assert diagnose(late(0.001)).verdict == "nothing"
 
 
 def test_a_trial_begins_settled():

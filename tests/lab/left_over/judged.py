@@ -8,6 +8,7 @@ from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.constants import Constants
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
+from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
@@ -17,10 +18,10 @@ from compensator.lab.screening.gathering import gather, gather_curves
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 
-def fitted(extra=None, seed: int = 0) -> Fit:
+def fitted(extra=None, seed: int = 0, facts: Facts = FACTS) -> Fit:
     """The model that every joint has, fitted to trials of six seconds, with so much more effort in them."""
     made = recordings(Joint(extra=extra), Bench(duration_s=6.0), plans(), seed)
-    return fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=8.0)), default_effects(FACTS))
+    return fit_model(make_dataset(made, facts, Processing(cutoff_hz=8.0)), default_effects(facts))
 
 
 def leaving(fit: Fit, residual: FloatArray) -> Candidates:

@@ -13,6 +13,7 @@ from compensator.lab.left_over.orders import FORCE, FRICTION, GROWING, Line, for
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.gathering import gather
 from tests.lab.left_over.judged import fitted
+from tests.lab.synthetic import FACTS
 
 ORDER = 43.7  # not in the catalogue, which has whole ones up to 30, and multiples of a gear ratio that is known
 RIPPLE_N_M = 0.003  # a twentieth of the dry friction, half of the noise
@@ -29,7 +30,7 @@ def test_noise_does_not_come_back(seed):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_the_best_of_a_thousand_orders_is_no_small_chance(seed, monkeypatch):
-    for bound, anything in (("FORETOLD", -np.inf), ("LEAST_OF_EFFORT", 0.0)):
+    for bound, anything in (("VERY_STRONG", -np.inf), ("LEAST_OF_EFFORT", 0.0)):
         monkeypatch.setattr(orders, bound, anything)
     found = line(fitted(seed=seed), 1.0)
     assert found is not None
@@ -45,7 +46,8 @@ def test_a_ripple_smaller_than_a_sensor_is_linear_is_no_line(monkeypatch):
 
 
 def test_a_ripple_of_an_order_that_the_catalogue_lacks_is_told():
-    fit = fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q + 0.4))
+    told = replace(FACTS, gear_ratio=100.0)
+    fit = fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q + 0.4), facts=told)
     found = line(fit)
     assert found is not None
     assert found.order == pytest.approx(ORDER, rel=0.02)
@@ -90,7 +92,7 @@ def test_what_comes_in_one_stretch_alone_is_no_line(monkeypatch):
 
     fit = fitted(extra)
     assert line(fit, 1.0) is None
-    monkeypatch.setattr(orders, "FORETOLD", -np.inf)
+    monkeypatch.setattr(orders, "VERY_STRONG", -np.inf)
     assert line(fit, 1.0) is not None
 
 

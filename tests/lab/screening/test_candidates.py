@@ -55,7 +55,7 @@ def test_each_effect_is_judged_without_what_would_absorb_it(gathered):
 def test_every_effect_that_is_not_in_the_model_is_a_candidate_in_all_its_shapes(gathered):
     names = {block.name for block in gathered.named}
     looked_for = {effect.name for effect in candidates(DEFAULT, FACTS)}
-    steady = {name for name in looked_for if catalogue()[name].rows == "sliding" and not catalogue()[name].efforts}
+    steady = {name for name in looked_for if catalogue()[name].rows == "sliding"}
     assert names == steady - set(DEFAULT) - set(gathered.left_out)
     of_voltages = {name for name, effect in catalogue().items() if effect.efforts and "torque" not in effect.efforts}
     hidden = {"back_driving_friction", "coulomb_asymmetry"}  # in the free scale of gravity, and in the offset

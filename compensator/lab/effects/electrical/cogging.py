@@ -23,7 +23,8 @@ EFFECT = Effect(
     physics=(
         "The magnets pull the rotor towards the slots of the iron, and wheels mesh unevenly: a torque that "
         "goes round with the shaft, whatever the direction of motion. Looked for: 3 to 30 waves per turn of the joint, "
-        "as one and two are its weight's, and up to 36 per turn of the motor."
+        "as one and two are its weight's, and up to 36 per turn of the motor; where the gear ratio is not told, any "
+        "number that comes back for sure."
     ),
     equation=r"a \cos kq + b \sin kq",
     columns=columns,
@@ -36,5 +37,6 @@ EFFECT = Effect(
     source="Jahns, Soong 1996",
     shapes=shapes,
     shape_names=("order",),
+    goes_round="force",
     confused_with=("position_periodic_friction", "spring"),
 )

@@ -12,7 +12,7 @@ def shapes(_: Motion) -> list[Shape]:
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
-    """Sign of the predicted effort, smooth where it passes through zero, for shape (share,)."""
+    """Sign of the predicted current, smooth where it passes through zero, for shape (share,)."""
     return np.tanh(_over_uncertain(motion, shape))[None]
 
 
@@ -30,7 +30,7 @@ def slope(motion: Motion, shape: Shape) -> FloatArray:
 
 def _over_uncertain(motion: Motion, shape: Shape) -> FloatArray:
     """Predicted effort over that below which its sign is not sure."""
-    found: FloatArray = motion.predicted / (shape[0] * (motion.largest_effort or 1.0))
+    found: FloatArray = motion.driven / (shape[0] * (motion.largest_effort or 1.0))
     return found
 
 

@@ -9,12 +9,12 @@ from compensator.lab.recordings.recording import FloatArray
 # 1 is all of it; beside a model that was fitted to smoothed effort the first step is several times too long, and a
 # small share of a long time constant is what any chain leaves of a delay to second order
 LEAST_SHARE, MOST_SHARE = 0.5, 10.0
-SHORTEST_S, LONGEST_S = 0.03, 0.5  # a shorter one is a delay and no more; a longer one would show no motion
+SHORTEST_S, LONGEST_S = 0.008, 0.5  # a shorter one is a delay and no more; a longer one would show no motion
 
 
 def shapes(_: Motion) -> list[Shape]:
     """Time constants, some four to a decade."""
-    return [(float(time_s),) for time_s in np.geomspace(SHORTEST_S, LONGEST_S, 6)]
+    return [(float(time_s),) for time_s in np.geomspace(SHORTEST_S, LONGEST_S, 8)]
 
 
 def is_none_shorter(shape: Shape) -> bool:
@@ -54,6 +54,6 @@ EFFECT = Effect(
     builds_on="effort",
     pipeline=True,
     efforts=("current", "torque"),  # what a drive measures; a duty or a voltage is what it was told
-    after=("measurement_delay",),
+    standing_in=frozenset({"jerk", "sign_rate"}),
     holds=is_none_shorter,
 )

@@ -1,27 +1,41 @@
 """Measurement delay."""
 
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recordings.recording import FloatArray
 
+SHORT = 1e-3  # of a sample: less changes nothing
+
 
 def columns(motion: Motion, _: Shape) -> FloatArray:
-    """Rate of change of the predicted effort."""
-    return motion.effort_rate[None]
+    """What the predicted effort changes by within the delay that the model has, over it: its rate where that is none.
+
+    To first order alone, a delay of 20 ms would leave as much of a motion of some hertz as a small effect does. The
+    model's delay is found anew with every fit, until it stays (secant).
+    """
+    late_s, time_s = motion.late_s, motion.time_s
+    if abs(late_s) < SHORT * motion.step_s:
+        return motion.effort_rate[None]
+    later = np.clip(time_s + late_s, time_s[0], time_s[-1])
+    moved: FloatArray = CubicHermiteSpline(time_s, motion.predicted, motion.effort_rate)(later)
+    return ((moved - motion.predicted) / late_s)[None]
 
 
 EFFECT = Effect(
     name="measurement_delay",
     title="Measurement delay",
     physics=(
-        "The position is older than the effort: the model then sees the motion late. To first order the error "
-        "is the rate of change of the predicted effort times the delay."
+        "The position is older than the effort: the model then sees the motion late, and the effort is that of a "
+        "moment later."
     ),
-    equation=r"\Delta t\,\dot{\hat\tau}",
+    equation=r"\hat\tau(t + \Delta t) - \hat\tau(t)",
     columns=columns,
     parameters=(Parameter("delay", "s", -0.1, 0.1),),
     driver="effort_rate",
     excited_by="fast reversals and frequencies above 3 Hz",
-    source="first-order expansion in the delay",
+    source="Gauss-Newton, the delay found anew with each fit",
     confused_with=("inertia",),
     builds_on="effort",
     pipeline=True,

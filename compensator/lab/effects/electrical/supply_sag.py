@@ -7,12 +7,14 @@ from compensator.lab.recordings.recording import FloatArray
 
 
 def columns(motion: Motion, _: Shape) -> FloatArray:
-    """Cube of the predicted effort over the square of the largest."""
-    return (motion.predicted * _of_largest(motion) ** 2)[None]
+    """Effort by current times the square of the duty, as predicted: over the largest."""
+    return (motion.driven * _of_largest(motion) ** 2)[None]
 
 
 def discrepancy(motion: Motion, _: Shape) -> FloatArray:
-    """What else the duty holds, the back-EMF: the other terms of D^2 i with D U = R i + k_e w."""
+    """What else the duty holds where nobody tells the back-EMF: the other terms of D^2 i with D U = R i + k_e w."""
+    if motion.back_emf:
+        return np.empty((0, len(motion.predicted)))
     share = _of_largest(motion)
     return np.array([motion.velocity * share**2, motion.velocity**2 * share])
 

@@ -7,8 +7,8 @@ from compensator.lab.recordings.recording import FloatArray
 
 
 def columns(motion: Motion, _: Shape) -> FloatArray:
-    """Square of the predicted effort, with its sign."""
-    return (motion.predicted * np.abs(motion.predicted))[None]
+    """Square of the predicted effort by current, with its sign."""
+    return (motion.driven * np.abs(motion.driven))[None]
 
 
 EFFECT = Effect(

@@ -7,8 +7,8 @@ REFERENCE_C = 25.0  # where the plain coefficients hold
 
 
 def columns(motion: Motion, _: Shape) -> FloatArray:
-    """Predicted effort times temperature above the reference."""
-    return ((motion.temperature_c - REFERENCE_C) * motion.predicted)[None]
+    """Predicted effort by current times temperature above the reference."""
+    return ((motion.temperature_c - REFERENCE_C) * motion.driven)[None]
 
 
 EFFECT = Effect(

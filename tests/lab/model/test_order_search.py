@@ -1,0 +1,80 @@
+"""What cosine and sine explain is what least squares makes of the two; an order that nobody tells is found."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.linear import orthonormal
+from compensator.lab.model.order_search import explained
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+
+ROWS, PAIRS = 90, 6
+ORDER = 61.3  # once a turn of a motor behind a gear, which the catalogue has only where the ratio is told
+RIPPLE_N_M = 0.015
+
+
+def test_it_is_the_fall_of_the_squares():
+    random = np.random.default_rng(1)
+    basis = orthonormal(random.standard_normal((ROWS, 4)))
+    columns = random.standard_normal((ROWS, 2 * PAIRS)) + basis[:, :1]
+    residual = random.standard_normal(ROWS)
+    residual -= basis @ (basis.T @ residual)
+    found = explained(columns, basis, residual)
+    for index in range(PAIRS):
+        pair = np.column_stack([basis, columns[:, [index, PAIRS + index]]])
+        left = residual - pair @ np.linalg.lstsq(pair, residual, rcond=None)[0]
+        assert found[index] == pytest.approx(residual @ residual - left @ left)
+
+
+def test_two_that_are_one_beside_the_model_explain_nothing():
+    random = np.random.default_rng(2)
+    basis = orthonormal(random.standard_normal((ROWS, 2)))
+    cosine = random.standard_normal(ROWS)
+    found = explained(np.column_stack([cosine, 2.0 * cosine + basis[:, 0]]), basis, random.standard_normal(ROWS))
+    assert found == pytest.approx([0.0])
+
+
+def test_what_is_not_told_from_the_model_explains_nothing():
+    random = np.random.default_rng(3)
+    basis = orthonormal(random.standard_normal((ROWS, 2)))
+    hidden = basis[:, 0] + 1e-3 * random.standard_normal(ROWS)
+    found = explained(np.column_stack([hidden, random.standard_normal(ROWS)]), basis, random.standard_normal(ROWS))
+    assert found == pytest.approx([0.0])
+
+
+UNTOLD = replace(FACTS, gear_ratio=None)
+
+
+def fitted(law, facts=UNTOLD, effects=()):
+    made = recordings(Joint(extra=law), Bench(duration_s=6.0), plans(), seed=2)
+    return fit_model(make_dataset(made, facts, Processing(cutoff_hz=8.0)), [*default_effects(facts), *effects])
+
+
+LAWS = {
+    "position_periodic_friction": lambda x: RIPPLE_N_M * np.cos(ORDER * x.q + 0.4) * np.sign(x.v),
+    "cogging": lambda x: RIPPLE_N_M * np.cos(ORDER * x.q + 0.4),
+}
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_what_goes_round_so_often_is_named_though_nobody_tells_the_gear_ratio(name):
+    fit = fitted(LAWS[name])
+    found = diagnose(fit)
+    assert (found.verdict, found.candidates[0].effect.name) == ("missing", name), found.sentence
+    assert found.candidates[0].shape[0] == pytest.approx(ORDER, rel=0.01)
+    grown = fit_model(fit.dataset, [*fit.names, name])
+    assert grown.shapes[name][0] == pytest.approx(ORDER, rel=0.01)
+    assert np.hypot(*grown.terms[-1].coefficients) == pytest.approx(RIPPLE_N_M, rel=0.1)
+
+
+def test_where_the_gear_ratio_is_told_no_other_order_is_taken_for_the_gears():
+    fit = fitted(LAWS["cogging"], replace(FACTS, gear_ratio=100.0))
+    assert diagnose(fit).verdict == "nothing"
+    grown = fit_model(fit.dataset, [*fit.names, "cogging"])
+    assert grown.shapes["cogging"][0] != pytest.approx(ORDER, rel=0.01)
