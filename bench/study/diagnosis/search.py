@@ -69,6 +69,7 @@ def _searched(store: Store, study_id: int, model_id: int | None, most: int) -> t
         added=list(found.added),
         steps=steps,
         verdict=last.verdict,
+        conclusion=last.conclusion,
         slight=last.slight,
         sentence=last.advice if last.slight else last.sentence,
     )

@@ -7,6 +7,7 @@ from pydantic import Field
 from bench.json_types import Number
 from bench.study.models.base import StudyModel
 from bench.study.models.comparison import FittedParameter
+from bench.study.models.diagnosis import Conclusion
 
 
 class BeforeAfter(StudyModel):
@@ -66,5 +67,6 @@ class Searched(StudyModel):
     added: list[str]
     steps: list[SearchStep]
     verdict: str
+    conclusion: Conclusion = Field(description="of the last model, as its diagnosis has it")
     slight: bool = Field(description="what its last model lacks by the verdict is slight, and was not added")
     sentence: str

@@ -103,7 +103,10 @@ class Diagnosis(StudyModel):
 
     study_id: int
     model_id: int
-    verdict: Verdict
+    verdict: Verdict = Field(
+        description="what kind of answer it is; 'nothing' also where more than noise is left that nothing explains: "
+        "the code of `conclusion` is then 'unexplained'"
+    )
     sentence: str
     p_value: Number = Field(
         description=f"chance of such evidence in any of a diagnosis's screenings if nothing were missing; {LEAST_P}"
