@@ -1,7 +1,6 @@
 """Measurement delay."""
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recordings.recording import FloatArray
@@ -15,12 +14,22 @@ def columns(motion: Motion, _: Shape) -> FloatArray:
     To first order alone, a delay of 20 ms would leave as much of a motion of some hertz as a small effect does. The
     model's delay is found anew with every fit, until it stays (secant).
     """
-    late_s, time_s = motion.late_s, motion.time_s
+    late_s = motion.late_s
     if abs(late_s) < SHORT * motion.step_s:
         return motion.effort_rate[None]
-    later = np.clip(time_s + late_s, time_s[0], time_s[-1])
-    moved: FloatArray = CubicHermiteSpline(time_s, motion.predicted, motion.effort_rate)(later)
-    return ((moved - motion.predicted) / late_s)[None]
+    return ((_later(motion, late_s / motion.step_s) - motion.predicted) / late_s)[None]
+
+
+def _later(motion: Motion, steps: float) -> FloatArray:
+    """The predicted effort so many steps later, between its samples by cubic Hermite splines, shape (n,)."""
+    effort, slope = motion.predicted, motion.step_s * motion.effort_rate
+    whole = int(np.floor(steps))
+    x = steps - whole
+    here = np.clip(np.arange(len(effort)) + whole, 0, len(effort) - 1)
+    there = np.minimum(here + 1, len(effort) - 1)
+    onto = x * x * (3.0 - 2.0 * x)
+    moved: FloatArray = (1.0 - onto) * effort[here] + onto * effort[there]
+    return moved + x * (1.0 - x) * ((1.0 - x) * slope[here] - x * slope[there])
 
 
 EFFECT = Effect(
