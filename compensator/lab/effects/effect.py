@@ -1,9 +1,10 @@
 """What an effect is: a named physical mechanism that adds columns to the regression of the effort."""
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -89,6 +90,17 @@ class Motion:
         """A numeric condition of the trial, or the default where it is not given."""
         value = self.conditions.get(name, default)
         return float(value) if isinstance(value, int | float) else default
+
+    def having(self, **changed: Any) -> "Motion":
+        """The same motion with other values of what a model says of it; what is known of its position is kept.
+
+        Every pass of a fit asks for it in every trial: `dataclasses.replace` would look through all fields, and the
+        strokes would be found again.
+        """
+        motion = copy(self)
+        motion.__dict__.update(changed)
+        motion.__dict__.pop("is_bent", None)
+        return motion
 
     @property
     def turns_on(self) -> bool:

@@ -20,7 +20,7 @@ from compensator.lab.rows.dataset import Dataset, RowChoice
 
 MOST_PASSES = 20  # each shrinks the change of the predicted load several times
 MOST_SEARCHES = 3  # of shapes, where one of them says how the position is misread
-SETTLED_SHARE = 1e-6  # change of the prediction that counts as none
+SETTLED_SHARE = 1e-5  # change of the prediction that counts as none: a fiftieth of the least that is worth a name
 
 
 def fit_model(
@@ -90,7 +90,7 @@ def _fit(
     misread = any(effect.misreads is not None for effect in effects)
     dataset = (dataset if misread else dataset.as_read()).straightened()
     plain = [effect for effect in effects if not effect.uses_prediction]
-    if dataset.is_predicted and not misread and all(effect.name in kept for effect in effects if effect.shape_names):
+    if dataset.is_predicted and all(effect.name in kept for effect in effects if effect.shape_names):
         # the prediction of a model that is nearly this one is a better start than none
         return _settle(fit_linear(dataset, effects, rows, kept, weight), effects, kept, weight)
     shapes = find_shapes(dataset, plain or effects, rows, kept, weight)

@@ -101,11 +101,12 @@ def solve_normal(gram: FloatArray, moment: FloatArray, bounds: Bounds) -> FloatA
     scale = np.sqrt(np.maximum(np.diag(gram), np.finfo(float).tiny))
     values, vectors = np.linalg.eigh(gram / np.outer(scale, scale))
     solid = values > 1e-12 * values[-1]
-    root = vectors[:, solid] * np.sqrt(values[solid])  # gram = root root'
-    wanted = (vectors[:, solid].T @ (moment / scale)) / np.sqrt(values[solid])
-    free: FloatArray = np.linalg.lstsq(root.T, wanted, rcond=None)[0] / scale
+    axes, size = vectors[:, solid], np.sqrt(values[solid])
+    wanted = (axes.T @ (moment / scale)) / size
+    free: FloatArray = (axes @ (wanted / size)) / scale  # of all that fit as well, the least
     if np.all(free >= bounds.low) and np.all(free <= bounds.high):
         return free
+    root = axes * size  # gram = root root'
     found = lsq_linear(root.T, wanted, (bounds.low * scale, bounds.high * scale), method="bvls")
     bounded: FloatArray = np.clip(found.x / scale, bounds.low, bounds.high)
     return bounded

@@ -60,8 +60,10 @@ def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray, judged: BoolArray) 
     bounds = fit.bounds.of(kept)
     gram, moment = columns.T @ columns, columns.T @ effort
     residual, doubt = np.zeros(len(units)), np.zeros(len(unit))
-    for label in np.unique(unit):
-        own, seen = np.flatnonzero(unit == label), np.flatnonzero(rows & (units == label))
+    judged_rows = np.flatnonzero(rows)
+    seen_of = _by_label(units[judged_rows])
+    for label, own in _by_label(unit).items():
+        seen = judged_rows[seen_of.get(label, [])]
         inside = columns[own]
         rest = solve_without((gram, moment), (inside.T @ inside, inside.T @ effort[own]), bounds)
         residual[seen] = fit.target[seen] - fit.columns[seen][:, kept] @ rest
@@ -69,6 +71,13 @@ def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray, judged: BoolArray) 
         if fit.dataset.is_bent and len(seen):
             residual[seen] -= _beyond_tangent(fit, kept, rest, rows & (units == label))
     return replace(_result(fit, kind, rows, residual[rows], units[rows]), doubt=doubt[rows[fit.training]])
+
+
+def _by_label(labels: IntArray) -> dict[int, IntArray]:
+    """Where each label stands (n,), in order."""
+    order = np.argsort(labels, kind="stable")
+    found, first = np.unique(labels[order], return_index=True)
+    return dict(zip(found.tolist(), np.split(order, first[1:]), strict=True)) if len(order) else {}
 
 
 def _doubt(own: FloatArray, whole: FloatArray) -> FloatArray:

@@ -16,6 +16,7 @@ from compensator.lab.recordings.recording import FloatArray, IntArray
 
 FILTER_ORDER = 4
 TURNED_AT_ONCE = 8  # rows: what a line of the cache holds
+PASSES_ALL = 0.49  # of the sampling rate: from there on nothing is taken away
 PADDING = 3  # times the filter's length, continued at both ends
 
 
@@ -27,34 +28,62 @@ def low_pass(values: FloatArray, cutoff_hz: float, rate_hz: float) -> FloatArray
         cutoff_hz: where each of the two passes halves the power.
         rate_hz: of the samples.
     """
-    if cutoff_hz >= 0.49 * rate_hz:
+    if cutoff_hz >= PASSES_ALL * rate_hz:
         return values
-    [filtered] = low_pass_each([np.atleast_2d(values)], cutoff_hz, [rate_hz])
-    return np.ascontiguousarray(filtered).reshape(values.shape)
+    rows = np.atleast_2d(values).astype(np.float64, copy=False)
+    filtered = low_pass_thinned([rows], cutoff_hz, [rate_hz], [np.arange(rows.shape[1])])
+    return np.ascontiguousarray(filtered.T).reshape(values.shape)
 
 
-def low_pass_each(blocks: Sequence[FloatArray], cutoff_hz: float, rates_hz: Sequence[float]) -> list[FloatArray]:
-    """The same for several blocks (k, n), as of several trials, each of its own length and rate; all at once."""
-    found = list(blocks)
-    some = [index for index, rate_hz in enumerate(rates_hz) if cutoff_hz < 0.49 * rate_hz and blocks[index].size]
-    if not some:
-        return found
+def low_pass_thinned(
+    blocks: Sequence[FloatArray], cutoff_hz: float, rates_hz: Sequence[float], picked: Sequence[IntArray]
+) -> FloatArray:
+    """The same for the blocks (k, n) of several trials, each of its own length and rate, all at once; thinned.
+
+    Columns of zeros, as orders that an effect does not use, stay what they are.
+
+    Args:
+        blocks: all of as many columns, k.
+        cutoff_hz: as `low_pass`.
+        rates_hz: of each block's samples.
+        picked: which samples of each block are wanted, rising.
+
+    Returns:
+        The picked samples of all blocks, one after the other, shape (N, k).
+    """
+    whole = np.concatenate(blocks, axis=1)
+    ends = np.cumsum([0, *(len(one) for one in picked)])
+    thinned = np.zeros((ends[-1], len(whole)))
+    used = _used(whole)
+    if not len(used):
+        return thinned
+    starts = np.cumsum([0, *(block.shape[1] for block in blocks)])
+    lengths = np.diff(starts)
+    untouched = [index for index, rate_hz in enumerate(rates_hz) if cutoff_hz >= PASSES_ALL * rate_hz]
+    for index in untouched:
+        thinned[ends[index] : ends[index + 1]] = blocks[index].T[picked[index]]
     # the longest first, so that the columns that have begun stand side by side
-    some.sort(key=lambda index: -blocks[index].shape[1])
-    widths = tuple(len(blocks[index]) for index in some)
-    sections, steady = _sections_of_columns(cutoff_hz, tuple(rates_hz[index] for index in some), widths)
+    some = [int(index) for index in np.argsort(-lengths, kind="stable") if index not in untouched and lengths[index]]
+    if not some:
+        return thinned
+    sections, steady = _sections_of_columns(cutoff_hz, tuple(rates_hz[index] for index in some), len(used))
     padding = PADDING * (2 * len(sections) + 1)
-    lengths = [blocks[index].shape[1] + 2 * padding for index in some]
-    first_rows = lengths[0] - np.array(lengths)
-    together = np.empty((lengths[0], sum(widths)))
-    parts = []
-    for index, first, part in zip(some, first_rows, np.split(together, np.cumsum(widths)[:-1], axis=1), strict=True):
-        _put_with_odd_extension(blocks[index], part[first:], padding)
-        parts.append((index, part[first + padding : lengths[0] - padding].T))
-    _there_and_back(sections, steady, np.repeat(first_rows, widths), together)
-    for index, part in parts:
-        found[index] = part
-    return found
+    longest = int(lengths[some[0]]) + 2 * padding
+    first_rows = longest - 2 * padding - lengths[some]
+    together = np.empty((longest, len(used) * len(some)))
+    _put_with_odd_extension(whole, used, starts[some], lengths[some], together, padding)
+    _there_and_back(sections, steady, np.repeat(first_rows, len(used)), together)
+    chosen = [picked[index] for index in some]
+    counts = np.array([len(one) for one in chosen])
+    _take(together, np.concatenate(chosen), counts, first_rows + padding, ends[some], used, thinned)
+    return thinned
+
+
+def _used(columns: FloatArray) -> IntArray:
+    """Which columns (k, n) hold anything."""
+    # most are seen at once, by the middle sample
+    seen = columns[:, columns.shape[1] // 2 : columns.shape[1] // 2 + 1].any(axis=1)
+    return np.flatnonzero(seen if seen.all() else columns.any(axis=1))
 
 
 @lru_cache(maxsize=256)
@@ -65,31 +94,75 @@ def filter_sections(cutoff_hz: float, rate_hz: float) -> tuple[FloatArray, Float
 
 
 @lru_cache(maxsize=256)
-def _sections_of_columns(
-    cutoff_hz: float, rates_hz: tuple[float, ...], widths: tuple[int, ...]
-) -> tuple[FloatArray, FloatArray]:
-    """Those of each column of blocks of such rates and widths, (sections, 6, k) and (sections, 2, k).
+def _sections_of_columns(cutoff_hz: float, rates_hz: tuple[float, ...], width: int) -> tuple[FloatArray, FloatArray]:
+    """Those of each column of blocks of such rates and a width, (sections, 6, k) and (sections, 2, k).
 
     A fit asks for the same trials side by side again and again.
     """
     designs = [filter_sections(cutoff_hz, rate_hz) for rate_hz in rates_hz]
-    sections, steady = (np.repeat(kind, widths, axis=0).transpose(1, 2, 0) for kind in zip(*designs, strict=True))
+    sections, steady = (np.repeat(kind, width, axis=0).transpose(1, 2, 0) for kind in zip(*designs, strict=True))
     return np.ascontiguousarray(sections), np.ascontiguousarray(steady)
 
 
 @njit(cache=True)
-def _put_with_odd_extension(values: FloatArray, into: FloatArray, count: int) -> None:
-    """Values (k, n) as columns, continued at both ends by their own mirror image through the end points."""
-    columns, last = values.shape[0], values.shape[1] - 1
-    # some rows of all columns at a time: what is read and what is written both stay near
-    for start in range(0, last + 1, TURNED_AT_ONCE):
-        for column in range(columns):
-            for row in range(start, min(start + TURNED_AT_ONCE, last + 1)):
-                into[count + row, column] = values[column, row]
-    for away in range(1, count + 1):
-        for column in range(columns):
-            into[count - away, column] = 2.0 * values[column, 0] - values[column, away]
-            into[count + last + away, column] = 2.0 * values[column, last] - values[column, last - away]
+def _put_with_odd_extension(
+    whole: FloatArray, used: IntArray, starts: IntArray, lengths: IntArray, into: FloatArray, count: int
+) -> None:
+    """Blocks of rows (k, m), each continued at both ends by its own mirror image through the end points.
+
+    Args:
+        whole: the blocks, side by side.
+        used: rows of them that are wanted.
+        starts: of each block.
+        lengths: of each block.
+        into: columns that all end together, those of one block beside each other; shape (longest, len(used) * blocks).
+        count: values that are continued by.
+    """
+    width = len(used)
+    for block in range(len(starts)):
+        start, last, left = starts[block], lengths[block] - 1, block * width
+        top = len(into) - lengths[block] - count
+        # some samples of all columns at a time: what is read and what is written both stay near
+        for first in range(0, last + 1, TURNED_AT_ONCE):
+            for column in range(width):
+                for row in range(first, min(first + TURNED_AT_ONCE, last + 1)):
+                    into[top + row, left + column] = whole[used[column], start + row]
+        for away in range(1, count + 1):
+            for column in range(width):
+                own = used[column]
+                into[top - away, left + column] = 2.0 * whole[own, start] - whole[own, start + away]
+                end = start + last
+                into[top + last + away, left + column] = 2.0 * whole[own, end] - whole[own, end - away]
+
+
+@njit(cache=True)
+def _take(
+    filtered: FloatArray,
+    picked: IntArray,
+    counts: IntArray,
+    tops: IntArray,
+    ends: IntArray,
+    used: IntArray,
+    thinned: FloatArray,
+) -> None:
+    """The picked samples of blocks of filtered columns, to where each block's rows begin.
+
+    Args:
+        filtered: as `_put_with_odd_extension` has laid them out.
+        picked: samples of all blocks, one after the other.
+        counts: of them, by block.
+        tops: row of each block's first sample.
+        ends: first row of each block in `thinned`.
+        used: columns of `thinned` that are filled.
+        thinned: filled, shape (N, k).
+    """
+    width, place = len(used), 0
+    for block in range(len(counts)):
+        for row in range(counts[block]):
+            sample = tops[block] + picked[place]
+            place += 1
+            for column in range(width):
+                thinned[ends[block] + row, used[column]] = filtered[sample, block * width + column]
 
 
 @njit(cache=True)

@@ -13,7 +13,7 @@ from compensator.lab.effects.effect import Effect, Motion, Shape
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.facts import Effort, Facts
-from compensator.lab.recordings.low_pass import low_pass_each
+from compensator.lab.recordings.low_pass import low_pass_thinned
 from compensator.lab.recordings.processing import Signals
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.recordings.regimes import Regime
@@ -285,16 +285,19 @@ class Dataset:
         """Filter and thin arrays (k, n) given per trial, one after the other; shape (N, k)."""
         parts: list[FloatArray] = []
         waiting: list[FloatArray] = []
-        values = 0
+        values = done = 0
         for rows in full_rate:
             waiting.append(rows)
             values += rows.size
             if values >= max(AT_ONCE, SIDE_BY_SIDE * rows.shape[1]):
-                parts += self._filtered(len(parts), waiting)
+                parts.append(self._filtered(done, waiting))
+                done += len(waiting)
                 waiting, values = [], 0
-        parts += self._filtered(len(parts), waiting)
-        assert len(parts) == len(self.trials)
-        return np.concatenate(parts, axis=1).T
+        if waiting:
+            parts.append(self._filtered(done, waiting))
+            done += len(waiting)
+        assert done == len(self.trials)
+        return np.concatenate(parts) if len(parts) > 1 else parts[0]
 
     def rows_of(self, full_rate: Sequence[FloatArray]) -> FloatArray:
         """Thin arrays (n,) given per trial, without filtering; shape (N,)."""
@@ -321,8 +324,7 @@ class Dataset:
         trials = tuple(
             replace(
                 trial,
-                motion=replace(
-                    trial.motion,
+                motion=trial.motion.having(
                     load_effort=load_effort[own],
                     inertia_beyond=beyond,
                     inertia=whole,
@@ -351,7 +353,7 @@ class Dataset:
         """
         doubts = doubts or [0.0] * len(self.trials)
         each = zip(self.trials, bends, doubts, strict=True)
-        motions = [replace(trial.motion, bend=bend, doubt=doubt) for trial, bend, doubt in each]
+        motions = [trial.motion.having(bend=bend, doubt=doubt) for trial, bend, doubt in each]
         trials = tuple(replace(trial, motion=motion) for trial, motion in zip(self.trials, motions, strict=True))
         return replace(self, trials=trials)
 
@@ -407,29 +409,11 @@ class Dataset:
         values = np.array([trial.motion.condition(quantity, 0.0) for trial in self.trials])
         return bool(np.ptp(values) > 0.0)
 
-    def _filtered(self, start: int, full_rate: Sequence[FloatArray]) -> list[FloatArray]:
-        """Filter and thin arrays (k, n) of some trials in a row, from the one of an index on."""
+    def _filtered(self, start: int, full_rate: Sequence[FloatArray]) -> FloatArray:
+        """Filter and thin arrays (k, n) of some trials in a row, from the one of an index on; shape (rows, k)."""
         trials = self.trials[start : start + len(full_rate)]
-        used = [_used(rows) for rows in full_rate]
-        filtered = low_pass_each(
-            [rows[some] for rows, some in zip(full_rate, used, strict=True)],
-            self.cutoff_hz,
-            [trial.signals.rate_hz for trial in trials],
-        )
-        found = []
-        for trial, rows, some, own in zip(trials, full_rate, used, filtered, strict=True):
-            thinned = np.zeros((len(rows), len(trial.picked)))
-            thinned[some] = own.T[trial.picked].T
-            found.append(thinned)
-        return found
-
-
-def _used(columns: FloatArray) -> slice | BoolArray:
-    """Which columns (k, n) hold anything: orders that an effect does not use are rows of zeros."""
-    # most are seen at once, by the middle sample
-    if np.count_nonzero(columns[:, columns.shape[1] // 2]) == len(columns):
-        return slice(None)
-    return np.asarray(columns.any(axis=1))
+        rates_hz = [trial.signals.rate_hz for trial in trials]
+        return low_pass_thinned(full_rate, self.cutoff_hz, rates_hz, [trial.picked for trial in trials])
 
 
 def _passed_on(wanted: Sequence[tuple[Effect, Shape]], motion: Motion) -> FloatArray:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import sosfiltfilt
 
-from compensator.lab.recordings.low_pass import FILTER_ORDER, filter_sections, low_pass, low_pass_each
+from compensator.lab.recordings.low_pass import FILTER_ORDER, filter_sections, low_pass, low_pass_thinned
 
 CUTOFF_HZ = 8.0
 
@@ -39,11 +39,18 @@ def test_whole_numbers_are_filtered_as_numbers():
 
 def test_blocks_of_any_length_and_rate_are_filtered_at_once_as_each_alone():
     random = np.random.default_rng(2)
-    rates_hz = [200.0, 210.0, 1000.0, 15.0, 200.0]
-    shapes = [(2, 300), (1, 900), (3, 900), (1, 200), (0, 400)]
-    blocks = [random.standard_normal(shape) for shape in shapes]
-    found = low_pass_each(blocks, CUTOFF_HZ, rates_hz)
-    for one, block, rate_hz in zip(found, blocks, rates_hz, strict=True):
-        assert np.array_equal(one, low_pass(block, CUTOFF_HZ, rate_hz))
-    assert found[3] is blocks[3]  # the cut-off is beyond Nyquist
-    assert low_pass_each([], CUTOFF_HZ, []) == []
+    rates_hz = [200.0, 210.0, 1000.0, 15.0, 200.0]  # of one the cut-off is beyond Nyquist
+    blocks = [random.standard_normal((3, count)) for count in (300, 900, 900, 200, 400)]
+    picked = [np.arange(0, block.shape[1], step) for block, step in zip(blocks, (1, 7, 3, 2, 400), strict=True)]
+    found = low_pass_thinned(blocks, CUTOFF_HZ, rates_hz, picked)
+    each = [low_pass(block, CUTOFF_HZ, rate_hz) for block, rate_hz in zip(blocks, rates_hz, strict=True)]
+    assert np.array_equal(found, np.concatenate([one[:, own].T for one, own in zip(each, picked, strict=True)]))
+
+
+def test_columns_of_zeros_stay_what_they_are_and_their_neighbours_are_filtered():
+    waves = np.random.default_rng(3).standard_normal((3, 300))
+    waves[1] = 0.0
+    for block in (waves, np.zeros((3, 300)), waves * (np.arange(300) != 150)):  # the middle sample tells of none
+        found = low_pass_thinned([block], CUTOFF_HZ, [200.0], [np.arange(300)])
+        assert np.array_equal(found.T[[0, 2]], low_pass(block[[0, 2]], CUTOFF_HZ, 200.0))
+        assert (found.T[1] == 0.0).all()

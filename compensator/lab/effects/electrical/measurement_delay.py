@@ -1,6 +1,7 @@
 """Measurement delay."""
 
 import numpy as np
+from numba import njit
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recordings.recording import FloatArray
@@ -17,19 +18,30 @@ def columns(motion: Motion, _: Shape) -> FloatArray:
     late_s = motion.late_s
     if abs(late_s) < SHORT * motion.step_s:
         return motion.effort_rate[None]
-    return ((_later(motion, late_s / motion.step_s) - motion.predicted) / late_s)[None]
+    return _later(motion.predicted, motion.step_s * motion.effort_rate, late_s / motion.step_s, late_s)[None]
 
 
-def _later(motion: Motion, steps: float) -> FloatArray:
-    """The predicted effort so many steps later, between its samples by cubic Hermite splines, shape (n,)."""
-    effort, slope = motion.predicted, motion.step_s * motion.effort_rate
+@njit(cache=True)
+def _later(effort: FloatArray, slope: FloatArray, steps: float, late_s: float) -> FloatArray:
+    """What an effort (n,) changes by so many steps later, over the delay: between samples by cubic Hermite splines.
+
+    Args:
+        effort: at every sample.
+        slope: its change within a step, at every sample.
+        steps: of the delay.
+        late_s: the delay.
+    """
+    last = len(effort) - 1
     whole = int(np.floor(steps))
     x = steps - whole
-    here = np.clip(np.arange(len(effort)) + whole, 0, len(effort) - 1)
-    there = np.minimum(here + 1, len(effort) - 1)
-    onto = x * x * (3.0 - 2.0 * x)
-    moved: FloatArray = (1.0 - onto) * effort[here] + onto * effort[there]
-    return moved + x * (1.0 - x) * ((1.0 - x) * slope[here] - x * slope[there])
+    onto, up, down = x * x * (3.0 - 2.0 * x), x * (1.0 - x) ** 2, x * x * (1.0 - x)
+    column = np.empty(len(effort))
+    for row in range(len(effort)):
+        here = min(max(row + whole, 0), last)
+        there = min(here + 1, last)
+        moved = (1.0 - onto) * effort[here] + onto * effort[there] + up * slope[here] - down * slope[there]
+        column[row] = (moved - effort[row]) / late_s
+    return column
 
 
 EFFECT = Effect(
