@@ -5,6 +5,7 @@ a robust score, its null by sign flips of whole stretches), what is it called (l
 and shapes), does it help (held-out error, resampled by whole trials).
 """
 
+from collections.abc import Collection
 from math import nan
 
 from compensator.lab import progress
@@ -71,7 +72,7 @@ def _diagnosed(fit: Fit) -> Diagnosis:
     notes += [note for answer in others if answer is families.rest for note in answer.notes]
     return Diagnosis(
         verdict=first.verdict,
-        sentence=first.sentence,
+        sentence=first.sentence + _hidden_rivals(first, fit, families.left_out),
         p_value=first.p_value,
         classes=_classes(ranked),
         candidates=ranked,
@@ -91,6 +92,20 @@ def best_named(fit: Fit, show_in: MotionRows) -> str | None:
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
     screening = screen(gathered.bases, blocks, fit.dataset.block_index[gathered.rows])
     return screening.evidence[0].block.name if screening.evidence else None
+
+
+def _hidden_rivals(first: Answer, fit: Fit, left_out: Collection[str]) -> str:
+    """What no trial can tell from the effect that is named, as long as a free scale of the model hides it."""
+    if first.verdict != "missing":
+        return ""
+    name = first.candidates[0].effect.name
+    hidden = [one for one in map(effect_named, left_out) if name in one.confused_with]
+    scales = {one.name: [scale for scale in one.hidden_by if scale in fit.names] for one in hidden}
+    return "".join(
+        f" It may as well be {one.title.lower()}, which the free scale of {' and '.join(scales[one.name])} hides."
+        for one in hidden
+        if scales[one.name]
+    )
 
 
 def _explains_more(answer: Answer, alien: AlienEffort) -> bool:

@@ -92,17 +92,30 @@ def share_of(show_in: MotionRows) -> float:
     return FORMULA_SHARE if show_in == "sliding" else SHARE_NEAR_REVERSALS
 
 
-def _spans(gathered: Candidates) -> list[tuple[str, FloatArray]]:
-    """What each block can explain beyond its base: the effect's name and an orthonormal basis (n, rank)."""
-    return [(block.name, new_directions(gathered.bases[block.base], block)) for block in gathered.named]
+def _spans(gathered: Candidates) -> list[tuple[str, FloatArray, bool]]:
+    """What each block can explain beyond its base: the effect's name, an orthonormal basis (n, rank), and whether it
+    has one column, of no coefficient below zero."""
+    quantity = gathered.fit.dataset.effort_definition.quantity
+    return [
+        (
+            block.name,
+            new_directions(gathered.bases[block.base], block),
+            [low for low, _ in effect_named(block.name).ranges_in(quantity)] == [0.0],
+        )
+        for block in gathered.named
+    ]
 
 
-def _alike(item: Evidence, spans: list[tuple[str, FloatArray]]) -> dict[str, float]:
-    """How much of what an effect explains every other one could explain, as a correlation."""
+def _alike(item: Evidence, spans: list[tuple[str, FloatArray, bool]]) -> dict[str, float]:
+    """How much of what an effect explains every other one could explain, as a correlation: of a sign that it can have.
+
+    What grows faster than the speed and what grows more slowly are told apart by nothing else.
+    """
     alike: dict[str, float] = {}
-    for name, basis in spans:
+    for name, basis, positive in spans:
         if name != item.block.name:
-            found = min(float(np.linalg.norm(basis.T @ item.direction)), 1.0)
+            shares = basis.T @ item.direction
+            found = min(float(np.linalg.norm(np.maximum(shares, 0.0) if positive else shares)), 1.0)
             alike[name] = max(alike.get(name, 0.0), found)
     return alike
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.note import Note, Value
+from compensator.lab.effects.free_curve import AGAINST_MOTION, FORCE, TIMES_SPEED, way_of
 from compensator.lab.left_over.bursts import Bursts, bursts_in_words, bursts_of, is_rattle
 from compensator.lab.left_over.left_over import LeftOver, left_over, unexplained_in_words
 from compensator.lab.left_over.remainder import LEAST_SHARE
@@ -44,9 +45,8 @@ def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[Note]:
         return []
     rest = screen(grown.bases, grown.curves.blocks, grown.fit.dataset.block_index[grown.rows])
     if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
-        driver = DRIVERS[rest.evidence[0].block.name.removesuffix(" against motion")]
-        against_motion = rest.evidence[0].block.name.endswith("against motion")
-        return [_structure_remains(name, driver.title, against_motion)]
+        variable, way = way_of(rest.evidence[0].block.name)
+        return [_structure_remains(name, DRIVERS[variable].title, way)]
     if left.swing is not None:
         return [_swings(name, left.swing)]
     if left.wandering is not None:
@@ -79,11 +79,11 @@ def _nearest_driver(generic: Screening) -> str | None:
     return best.block.name if best is not None and best.score > 0.0 else None
 
 
-def _structure_remains(name: str, driver: str, against_motion: bool) -> Note:
+def _structure_remains(name: str, driver: str, way: str) -> Note:
     """With an effect in the model, structure over a variable is left."""
-    how = " against the motion" if against_motion else ""
+    how = {FORCE: "", AGAINST_MOTION: " against the motion", TIMES_SPEED: " times the speed"}[way]
     text = f"After {name}, structure over {driver}{how} remains; add it and diagnose again."
-    return Note("structure-remains", text, {"effect": name, "driver": driver, "against_motion": against_motion})
+    return Note("structure-remains", text, {"effect": name, "driver": driver, "against_motion": way == AGAINST_MOTION})
 
 
 def _swings(name: str, swing: Swing) -> Note:

@@ -17,7 +17,7 @@ from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis, Picture
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Effect
-from compensator.lab.effects.free_curve import AGAINST_MOTION, name_of
+from compensator.lab.effects.free_curve import FORCE, name_of, way_of
 from compensator.lab.errors import NotApplicableError, UnusableDataError
 from compensator.lab.model.fit import fit_effects, widened, with_columns
 from compensator.lab.model.fitted import Fit
@@ -127,7 +127,7 @@ def _picture(filled: Fit, effect: Effect) -> Picture:
     own = len(effect.parameters)
     curve = (filled.columns[:, -own:] @ filled.coefficients[-own:])[rows]
     direction = np.sign(dataset.rows_of([trial.motion.direction for trial in dataset.trials])[rows])
-    against = effect.name.endswith(AGAINST_MOTION)
+    against = way_of(effect.name)[1] != FORCE
     sign = direction if against else np.ones(len(values))
     stretch = dataset.block_index[rows]
     residual = binned_mean(values, (filled.residual[rows] + curve) * sign, stretch)

@@ -166,4 +166,4 @@ def candidates(present: Sequence[str], facts: Facts) -> list[Effect]:
     impossible |= {"measured_load"} if "gravity" in present else set()  # it holds the weight
     unknown = {*present, *impossible, *_WITHHELD.get()}
     possible = [effect for name, effect in catalogue().items() if name not in unknown]
-    return [effect for effect in possible if effect.looked_for and set(effect.after) <= set(present)]
+    return [effect for effect in possible if set(effect.after) <= set(present)]

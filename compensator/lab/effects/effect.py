@@ -40,7 +40,7 @@ class Motion:
         predicted, effort_rate: predicted effort, all of it, and its rate of change.
         largest_effort: predicted, of all trials; 0 before anything is predicted.
         bend: what effects of the model with a `slope` add for each unit of effort that is predicted more.
-        back_emf: effort per velocity that drives no current: of a voltage, where the constant is told; else 0.
+        back_emf: effort per velocity that drives no current; 0 but of a voltage, and before anything is predicted.
         late_s: by how much the position is older than the effort, as far as the model says.
         doubt: by how much these may be wrong for what teeth do in known free play, in the measure of `bend`.
         temperature_c, supply_v: NaN where not measured.
@@ -301,7 +301,6 @@ class Effect:
         misreads: (motion, shape) -> array (k, n): how position is misread per unit of each of its first k coefficients.
         slope: (motion, shape) -> array (k, n): derivative of each column by the predicted effort, where it is so steep
             that the column cannot be taken for fixed while the rest is fitted.
-        looked_for: diagnoses look for it; False where only the sign tells it from another effect: added by hand then.
         after: effects that a model must have before this one can be missing.
         grows: its shape is a list of orders, 0 for none; each further one is taken as long as the rows pay for it.
         by_position: it goes by the position itself, which a shaft that turns on and on does not have.
@@ -349,7 +348,6 @@ class Effect:
     misreads: Callable[[Motion, Shape], FloatArray] | None = None
     slope: Callable[[Motion, Shape], FloatArray] | None = None
     by_position: bool = False
-    looked_for: bool = True
     after: tuple[str, ...] = ()
     grows: bool = False
     goes_round: Round | None = None

@@ -14,7 +14,7 @@ import numpy as np
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recordings.recording import FloatArray
 
-PREFIX, AGAINST_MOTION = "curve_of_", "_against_motion"
+PREFIX, FORCE, AGAINST_MOTION, TIMES_SPEED = "curve_of_", "", " against motion", " times speed"
 KNOTS = 7
 _ORDINALS = ("second", "third", "fourth", "fifth", "sixth", "seventh")
 
@@ -44,48 +44,76 @@ _VARIABLES = {
 }
 
 
+WAYS: dict[str, Callable[[Motion], FloatArray | float]] = {
+    FORCE: lambda _: 1.0,
+    AGAINST_MOTION: lambda motion: motion.direction,
+    TIMES_SPEED: lambda motion: motion.velocity,
+}
+"""How a curve acts: as a force, as dry friction does, or as damping does; by the end of its name."""
+
+_DAMPED = ("position", "load")  # what oil between surfaces may differ with, beside its temperature
+
+
+def ways_of(variable: str) -> tuple[str, ...]:
+    """In which ways what goes by a variable may act."""
+    return tuple(way for way in WAYS if way != TIMES_SPEED or variable in _DAMPED)
+
+
+def way_of(name: str) -> tuple[str, str]:
+    """The variable of a curve and its way, by a name as effects or blocks have it."""
+    spoken = name.removeprefix(PREFIX)
+    way = next((way for way in (AGAINST_MOTION, TIMES_SPEED) if spoken.endswith((way, _spelt(way)))), FORCE)
+    return spoken.removesuffix(way).removesuffix(_spelt(way)), way
+
+
+def _spelt(way: str) -> str:
+    return way.replace(" ", "_")
+
+
 def name_of(driver: str) -> str | None:
     """The curve over what a diagnosis says that the residual varies with; None where there is none.
 
     Args:
-        driver: as `Diagnosis.driver`: a variable, or one "against motion".
+        driver: as `Diagnosis.driver`: a variable, or one "against motion" or "times speed".
     """
-    variable, against, _ = driver.partition(" against motion")
+    variable, way = way_of(driver)
     if variable not in _VARIABLES:
         return None
-    if variable == "velocity" and against:
+    if variable == "velocity" and way:
         variable = "speed"  # friction the same both ways: what differs by direction has names, and shows beside it
     # what comes up after a reversal is friction, whether that is said or not
-    return f"{PREFIX}{variable}{AGAINST_MOTION if against or variable == 'since_reversal' else ''}"
+    return f"{PREFIX}{variable}{_spelt(AGAINST_MOTION if variable == 'since_reversal' else way)}"
 
 
 @cache
 def free_curve(name: str) -> Effect | None:
     """The curve of this name; None where it is not the name of one."""
-    variable = name.removeprefix(PREFIX).removesuffix(AGAINST_MOTION)
-    if not name.startswith(PREFIX) or variable not in _VARIABLES:
-        return None
-    return _curve(name, variable, name.endswith(AGAINST_MOTION))
+    variable, way = way_of(name)
+    return _curve(name, variable, way) if name in known() else None
 
 
 def known() -> list[str]:
     """Names of all curves."""
-    return [f"{PREFIX}{name}{way}" for name in _VARIABLES for way in ("", AGAINST_MOTION)]
+    return [f"{PREFIX}{name}{_spelt(way)}" for name in _VARIABLES for way in ways_of(name)]
 
 
-def _curve(name: str, variable: str, against: bool) -> Effect:
+def _curve(name: str, variable: str, way: str) -> Effect:
     over = _VARIABLES[variable]
-    sign = r"\,\mathrm{sgn}\,\dot q" if against else ""
+    words, factor, unit = {
+        FORCE: ("", "", "{effort}"),
+        AGAINST_MOTION: (", against the motion", r"\,\mathrm{sgn}\,\dot q", "{effort}"),
+        TIMES_SPEED: (", times the speed", r"\,\dot q", "{effort} s/{position}"),
+    }[way]
     return Effect(
         name=name,
-        title=f"Curve over {over.title}{', against the motion' if against else ''}",
+        title=f"Curve over {over.title}{words}",
         physics=(
             "Nobody knows yet: a curve that fills the gap, as measured. It holds within the range that the trials "
             "cover, and says which variable to look at, not why."
         ),
-        equation=rf"f(x){sign}",
-        columns=lambda motion, knots: _hats(over.of(motion), knots) * (motion.direction if against else 1.0),
-        parameters=tuple(Parameter(f"at the {one} knot", "{effort}") for one in _ORDINALS),
+        equation=rf"f(x){factor}",
+        columns=lambda motion, knots: _hats(over.of(motion), knots) * WAYS[way](motion),
+        parameters=tuple(Parameter(f"at the {one} knot", unit) for one in _ORDINALS),
         driver=variable,
         excited_by=f"trials over the whole range of {over.title}",
         source="a linear spline: model-error modelling (Ljung 1999)",

@@ -45,7 +45,8 @@ def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
     inertia = beyond if dataset.facts.arm_inertia_kg_m2 else whole
     driven = carried + dataset.at_samples(inertia) * acceleration
     parting = driven / dataset.at_samples(np.where(inertia == 0.0, np.inf, inertia))
-    dataset = dataset.with_prediction(load, total, parting, np.stack([inertia, whole, of_load]), _late_s(terms))
+    inertias = np.stack([inertia, whole, of_load])
+    dataset = dataset.with_prediction(load, total, parting, inertias, _late_s(terms), _back_emf(dataset, terms))
     steep = [term for term in terms if term.effect.slope is not None and np.any(term.coefficients)]
     if not steep:
         return dataset
@@ -56,6 +57,17 @@ def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
 def _late_s(terms: Sequence[Term]) -> float:
     """By how much the position is older than the effort."""
     return next((float(term.coefficients[0]) for term in terms if term.effect.name == "measurement_delay"), 0.0)
+
+
+def _back_emf(dataset: Dataset, terms: Sequence[Term]) -> float:
+    """Effort per speed that drives no current: of a voltage, all that goes by the speed where no constant is told.
+
+    Of a motor's voltage at speed that is most by far; what grease takes of it is little beside.
+    """
+    if dataset.effort_definition.quantity != "terminal_voltage":
+        return 0.0
+    told = dataset.facts.back_emf_v_s_rad
+    return told or next((float(term.coefficients[0]) for term in terms if term.effect.name == "viscous"), 0.0)
 
 
 def beyond_tangent(dataset: Dataset, terms: Sequence[Term], index: int, coefficients: FloatArray) -> FloatArray:

@@ -59,7 +59,7 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
     noise = _velocity_noise(signals, facts, cutoff)
     slow = max(SLOW_SHARE * fast, NOISE_FACTOR * noise)
     scales = Scales(noise, slow, fast, span, _session_span_s(signals))
-    trials = _with_way([_make_trial(s, effort, facts, cutoff, scales) for s in progress.each(signals)])
+    trials = _with_way([_make_trial(s, facts, cutoff, scales) for s in progress.each(signals)])
     plain = Dataset(trials, effort, facts, cutoff, processing.rows, scales)
     settled = replace(plain, trials=_on_one_flank(trials), cache={}, unfiltered={})
     enough = max(FEWEST_ROWS, FLANK_SHARE * int(plain.counted.sum()))
@@ -81,7 +81,7 @@ def more_trials(dataset: Dataset, recordings: Sequence[Recording]) -> Dataset:
     """
     effort, facts, cutoff = dataset.effort_definition, dataset.facts, dataset.cutoff_hz
     signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
-    trials = tuple(_make_trial(s, effort, facts, cutoff, dataset.scales) for s in signals)
+    trials = tuple(_make_trial(s, facts, cutoff, dataset.scales) for s in signals)
     trials = trials if dataset.crosses_free_play else _on_one_flank(trials)
     return replace(dataset, trials=trials, uncorrected=None, cache={}, unfiltered={})
 
@@ -154,7 +154,7 @@ def _check_conditions(recordings: Sequence[Recording]) -> None:
                 )
 
 
-def _make_trial(signals: Signals, effort: Effort, facts: Facts, cutoff_hz: float, scales: Scales) -> Trial:
+def _make_trial(signals: Signals, facts: Facts, cutoff_hz: float, scales: Scales) -> Trial:
     nothing = np.zeros(len(signals.time_s))
     motion = Motion(
         facts=facts,
@@ -180,7 +180,6 @@ def _make_trial(signals: Signals, effort: Effort, facts: Facts, cutoff_hz: float
         slow=scales.slow,
         fast=scales.fast,
         measured_load=signals.load,
-        back_emf=(facts.back_emf_v_s_rad or 0.0) if effort.quantity == "terminal_voltage" else 0.0,
     )
     step = max(1, int(signals.rate_hz / (ROWS_PER_CUTOFF_PERIOD * cutoff_hz)))
     picked = np.arange(step // 2, len(signals.time_s), step)

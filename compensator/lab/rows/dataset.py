@@ -310,6 +310,7 @@ class Dataset:
         parting: FloatArray,
         inertias: FloatArray,
         late_s: float = 0.0,
+        back_emf: float = 0.0,
     ) -> "Dataset":
         """The same rows, with the predicted load and effort in every trial's motion.
 
@@ -319,6 +320,7 @@ class Dataset:
             parting: the same.
             inertias: `inertia_beyond`, `inertia` and `load_inertia` of each trial's motion, shape (3, trials).
             late_s: of every trial's motion.
+            back_emf: of every trial's motion.
         """
         largest, nothing = float(np.abs(predicted).max(initial=0.0)), np.zeros(len(predicted))
         trials = tuple(
@@ -336,6 +338,7 @@ class Dataset:
                     bend=nothing[own],
                     doubt=0.0,
                     late_s=late_s,
+                    back_emf=back_emf,
                 ),
             )
             for trial, own, (beyond, whole, tip) in zip(self.trials, self.samples, inertias.T.tolist(), strict=True)

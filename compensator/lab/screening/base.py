@@ -62,12 +62,12 @@ class DriverBlock:
 
     Attributes:
         driver: key of `DRIVERS`.
-        against_motion: multiplied by the direction of motion (friction-like), or plain (force-like).
+        way: of `WAYS`, in which it acts.
         columns: filtered like the effort, shape (N, k).
         knots: of the spline, in the driver's unit, shape (k,).
     """
 
     driver: str
-    against_motion: bool
+    way: str
     columns: FloatArray
     knots: FloatArray

@@ -41,7 +41,7 @@ class Curves:
     @cached_property
     def splines(self) -> dict[str, DriverBlock]:
         """By block name."""
-        return {f"{one.driver}{' against motion' if one.against_motion else ''}": one for one in self._splines()}
+        return {f"{one.driver}{one.way}": one for one in self._splines()}
 
     @cached_property
     def blocks(self) -> list[Block]:

@@ -1,13 +1,14 @@
 """Driver splines: what a missing effect looks like when no formula of the catalogue fits.
 
-A seven-knot linear spline of each driving variable, once plain and once against the motion: a model-error model in
-Ljung's sense. It names the variable, not the mechanism.
+A seven-knot linear spline of each driving variable, once plain and once against the motion, and of what damping may
+vary with once times the speed: a model-error model in Ljung's sense. It names the variable, not the mechanism.
 """
 
 from collections.abc import Mapping
 
 import numpy as np
 
+from compensator.lab.effects.free_curve import WAYS, ways_of
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.reversals import slider
 from compensator.lab.rows.dataset import Dataset, Trial
@@ -24,18 +25,18 @@ def driver_blocks(dataset: Dataset) -> list[DriverBlock]:
     values = available(dataset)
     knots = {name: np.unique(np.quantile(values[name], KNOT_SHARES)) for name in SPLINED if name in values}
     stacked = dataset.stack(_all_hats(trial, knots) for trial in dataset.trials)
-    ways = [(name, against) for name in knots for against in (False, True)]
+    ways = [(name, way) for name in knots for way in ways_of(name)]
     ends = np.cumsum([len(knots[name]) for name, _ in ways])[:-1]
     return [
-        DriverBlock(name, against, columns, knots[name])
-        for (name, against), columns in zip(ways, np.split(stacked, ends, axis=1) if ways else [], strict=True)
+        DriverBlock(name, way, columns, knots[name])
+        for (name, way), columns in zip(ways, np.split(stacked, ends, axis=1) if ways else [], strict=True)
     ]
 
 
 def _all_hats(trial: Trial, knots: Mapping[str, FloatArray]) -> FloatArray:
-    """Hats of every driver of one trial, plain and against the motion, shape (k, n)."""
-    hats = [_hats(DRIVERS[name].of(trial), places) for name, places in knots.items()]
-    return np.concatenate([way for plain in hats for way in (plain, plain * trial.motion.direction)])
+    """Hats of every driver of one trial, in every way that it may act, shape (k, n)."""
+    hats = {name: _hats(DRIVERS[name].of(trial), places) for name, places in knots.items()}
+    return np.concatenate([plain * WAYS[way](trial.motion) for name, plain in hats.items() for way in ways_of(name)])
 
 
 def _hats(values: FloatArray, knots: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ import pytest
 
 from compensator.lab.comparison.comparison import compare, repeatability_floor
 from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.effects.free_curve import FORCE
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.regimes import Regime
@@ -105,7 +106,7 @@ def test_drivers_are_what_is_measured_and_varies(repeated):
     for block in blocks:
         assert len(block.knots) <= 7
         assert np.isfinite(block.columns).all()
-        if not block.against_motion:
+        if block.way == FORCE:
             assert block.columns.sum(axis=1) == pytest.approx(1.0, abs=1e-3)  # hats sum to one, filtered or not
 
 

@@ -41,6 +41,7 @@ def load_n_m(x) -> np.ndarray:
 PLANTED: dict[str, Law] = {
     "viscous_asymmetry": lambda x: 0.008 * np.abs(x.v),
     "viscous_quadratic": lambda x: 0.03 * x.v * np.abs(x.v),
+    "viscous_power": lambda x: 0.15 * np.abs(x.v) ** 0.4 * np.sign(x.v),
     "load_friction": lambda x: 0.08 * np.abs(load_n_m(x)) * np.sign(x.v),
     "load_friction_quadratic": lambda x: 0.1 * load_n_m(x) ** 2 * np.sign(x.v),
     "weight_friction": lambda x: 0.1 * x.load_kg * np.sign(x.v),
@@ -69,6 +70,12 @@ def test_a_planted_effect_is_named_first(name):
     assert best.detectability > 5.0
     assert best.physical
     assert found.data_problems == []
+
+
+def test_what_the_free_scale_of_gravity_hides_is_said_beside_the_name():
+    hidden = "It may as well be friction while back-driven, which the free scale of gravity hides."
+    assert hidden in diagnosis_of_planted("load_friction").sentence
+    assert "may as well" not in diagnosis_of_planted("weight_friction").sentence
 
 
 def bristles(x, distance_rad: float = 0.01) -> np.ndarray:

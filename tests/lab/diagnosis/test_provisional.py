@@ -61,6 +61,17 @@ def test_once_it_is_in_the_model_nothing_of_it_is_left(fit, found):
     assert list(filled.shapes[name]) == sorted(filled.shapes[name])
 
 
+def test_damping_that_differs_along_the_path_is_offered_as_a_curve_times_the_speed():
+    made = recordings(Joint(extra=lambda x: bump(x.q) * x.v), seed=3)
+    fit = fit_model(make_dataset(made, FACTS, Processing()), DEFAULT)
+    found = diagnose(fit)
+    assert (found.verdict, found.driver) == ("unknown-effect", "position times speed"), found.sentence
+    offered = provisional(fit, found)
+    assert offered.effect.name == "curve_of_position_times_speed"
+    assert offered.after < 0.6 * offered.before
+    assert offered.effect.parameters[0].unit == "{effort} s/{position}"
+
+
 def test_its_knots_are_of_all_trials():
     """Not of the first one, which may be cold."""
     cold, warm = (np.full(100, temperature) for temperature in (20.0, 40.0))

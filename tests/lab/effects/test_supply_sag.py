@@ -8,6 +8,7 @@ import pytest
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
+from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
@@ -51,6 +52,19 @@ def test_where_the_supply_is_measured_it_cannot_be_missing(trials):
 def test_a_stiff_supply_is_no_finding(trials):
     found = diagnosed(trials, replace(FACTS, supply_is_nominal=True), source_ohm=0.0)
     assert found.verdict == "nothing"
+
+
+BY_SPEED_V_S = BACK_EMF_V_S + WINDING_OHM * AMPERE_PER_N_M * Joint().viscous
+
+
+@pytest.mark.parametrize(("told_v_s_rad", "held_v_s_rad"), [(0.3, 0.3), (None, BY_SPEED_V_S)])
+def test_of_a_voltage_what_goes_by_the_speed_drives_no_current_where_no_constant_is_told(
+    trials, told_v_s_rad, held_v_s_rad
+):
+    facts = replace(FACTS, back_emf_v_s_rad=told_v_s_rad)
+    fit = fit_model(make_dataset([sagging(one, 0.0) for one in trials], facts, Processing()), default_effects(facts))
+    found = with_own_prediction(fit.dataset, fit.terms).trials[0].motion.back_emf
+    assert found == pytest.approx(held_v_s_rad, rel=0.05)
 
 
 def test_a_back_emf_error_hides_in_viscous_friction(trials):

@@ -36,5 +36,4 @@ EFFECT = Effect(
     smooth_shape=True,
     shape_names=("exponent",),
     confused_with=("stribeck", "viscous_quadratic"),
-    looked_for=False,  # beside viscous friction it is the quadratic law with the other sign
 )

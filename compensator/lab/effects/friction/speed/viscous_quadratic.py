@@ -17,9 +17,9 @@ EFFECT = Effect(
     physics=("Drag that grows with the square of speed: churning of grease, air drag, turbulence."),
     equation=r"F_{q}\,\dot q |\dot q|",
     columns=columns,
-    parameters=(Parameter("quadratic friction", "{effort} s2/{position}2"),),
+    parameters=(Parameter("quadratic friction", "{effort} s2/{position}2", 0.0),),  # else it stands for a power law
     driver="velocity",
     excited_by="the fastest speeds that the joint reaches",
     source="Rhoban/bam, model M6",
-    confused_with=("viscous", "stribeck"),
+    confused_with=("viscous", "stribeck", "viscous_power"),
 )
