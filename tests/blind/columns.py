@@ -24,7 +24,7 @@ def gathered(effort: FloatArray, blocks: dict[str, FloatArray]) -> Candidates:
         np.ones(len(effort)),
         [base],
         named,
-        Curves(list, lambda: np.empty((len(effort), 0)), np.asarray),
+        Curves(dict, np.asarray),
         {},
     )
 

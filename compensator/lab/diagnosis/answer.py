@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.model.fitted import Fit
-from compensator.lab.screening.evidence import Evidence
 
 EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
 
@@ -15,11 +14,8 @@ class Answer:
     """What one family of effects has to say.
 
     Attributes:
-        strength: noncentrality of what decided: the best effect, or the free curve that no effect follows.
-        gain: relative fall of the held-out error by that.
         remains: more than noise is left that nothing named here explains.
-        explained: the model with the effect that is named, where one of the joint or the chain is.
-        named: evidence for that effect.
+        explained: the model with the effect that is named, where it shows in motion.
         Others as in `Diagnosis`.
     """
 
@@ -29,8 +25,5 @@ class Answer:
     candidates: list[Candidate]
     driver: str | None
     notes: list[Note]
-    strength: float = 0.0
-    gain: float = 0.0
     remains: bool = False
     explained: Fit | None = None
-    named: Evidence | None = None

@@ -25,6 +25,7 @@ from compensator.lab.diagnosis.wording import named_in_words
 from compensator.lab.effects.catalogue import candidates
 from compensator.lab.effects.effect import Effect
 from compensator.lab.errors import NotApplicableError
+from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut
@@ -88,9 +89,10 @@ def breakaway_answer(
     stretches = len(np.unique(unit))
     sentence = _sentence(ranked[0], p_value, int(rows.training.sum()), stretches) if found else ""
     notes = [] if found else _too_few(stretches)
-    best = next(one.item for one in judged if one.effect is ranked[0].effect)
     verdict: Verdict = "missing" if found else "nothing"
-    return Answer(verdict, sentence, p_value, ranked, None, notes, best.noncentrality), left_out
+    effect, in_motion = ranked[0].effect, found and ranked[0].effect.rows != "breakaway"
+    explained = fit_effects(fit.dataset, [*fit.names, effect.name], fit.training) if in_motion else None
+    return Answer(verdict, sentence, p_value, ranked, None, notes, explained=explained), left_out
 
 
 def breakaway_blocks(base: BreakawayFit, wanted: Sequence[Effect]) -> tuple[list[Block], list[Base], dict[str, str]]:

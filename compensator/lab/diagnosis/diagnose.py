@@ -140,7 +140,7 @@ def _by_run(fit: Fit) -> list[Note]:
 
 def _left_in_sliding(fit: Fit, gathered: Candidates, memory: Answer) -> list[Note]:
     """What an effect with memory that is named leaves in steady sliding: near reversals not all of it is asked for."""
-    if memory.verdict != "missing" or memory.remains or memory.named is None:
+    if memory.verdict != "missing" or memory.remains or memory.explained is None:
         return []
     name = memory.candidates[0].effect.name
     explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)

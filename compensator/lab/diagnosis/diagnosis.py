@@ -6,6 +6,7 @@ from typing import Literal
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.effects.effect import Effect, EffectRows, Shape
 from compensator.lab.model.gain import Gain
+from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.rows.picture import BinnedMean
 
 Verdict = Literal["missing", "nothing", "unknown-effect", "data-problem"]
@@ -43,6 +44,7 @@ class Candidate:
         physical: all its coefficients lie within their physical bounds when fitted freely.
         picture: why.
         refused: why it is not the answer though its own numbers confirm it; empty where nothing speaks against it.
+        errors: held out, with it, of its family's rows; None of starts from rest.
         rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
     """
 
@@ -59,6 +61,7 @@ class Candidate:
     picture: Picture | None
     rows: EffectRows = "sliding"
     refused: str = ""
+    errors: HeldOut | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True)

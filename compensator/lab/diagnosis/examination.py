@@ -78,7 +78,7 @@ def _explains(kept: dict[str, float], other: Evidence) -> bool:
 def as_in_the_ladder(candidate: Candidate, fit: Fit, explained: Fit, show_in: MotionRows) -> Candidate:
     """The candidate with the held-out error of the model that it is added to: there, all shapes are found anew."""
     before, after = (_held_out(model, show_in) for model in (fit, explained))
-    return replace(candidate, after=after.relative, gain=held_out_gain(before, after))
+    return replace(candidate, after=after.relative, gain=held_out_gain(before, after), errors=after)
 
 
 def _held_out(fit: Fit, show_in: MotionRows) -> HeldOut:
@@ -156,5 +156,6 @@ def _candidate(
         gain=held_out_gain(before, after),
         physical=is_physical(gathered, item),
         picture=picture_of(gathered, item),
+        errors=after,
         rows=gathered.show_in,
     )

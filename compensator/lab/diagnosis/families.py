@@ -80,14 +80,12 @@ class _Family:
         """A free curve that no formula follows; None where there is none, or none is asked for."""
         if generic is None:
             return None
-        found = unfollowed(self.fit, self.gathered, generic, self.examined, self.best)
-        if found is None:
+        curve = unfollowed(self.fit, self.gathered, generic, self.examined, self.best)
+        if curve is None:
             return None
-        curve, p_value, gain = found
-        driver = curve.block.name
+        driver, p_value = curve.block.name, among_all(generic.p_value)
         sentence = answer_in_words("unknown-effect", p_value, self.examined, driver)
-        strength = curve.noncentrality
-        return Answer("unknown-effect", sentence, p_value, self.examined, driver, [], strength, gain=gain, remains=True)
+        return Answer("unknown-effect", sentence, p_value, self.examined, driver, [], remains=True)
 
     def name(self) -> Answer | None:
         """The effect that is missing; None where none is confirmed.
@@ -119,9 +117,7 @@ class _Family:
         examined = [first, *(one for one in self.examined if one is not candidate)]
         sentence = answer_in_words("missing", own_chance, examined, None)
         notes = what_remains(explained, self.gathered, candidate.effect.name)
-        strength, remains = best.noncentrality, bool(notes)
-        gain = first.gain.value
-        return Answer("missing", sentence, own_chance, examined, None, notes, strength, gain, remains, explained, best)
+        return Answer("missing", sentence, own_chance, examined, None, notes, bool(notes), explained)
 
     def _chance_of(self, candidate: Candidate) -> float:
         """The chance of the effect that is to be named, if any of its family is no luck."""
@@ -140,9 +136,7 @@ class _Family:
         bends, too_far = found
         ranked = [bends, *(one for one in self.examined if one is not bends)]
         sentence = bending_in_words(bends, too_far, self.fit.dataset.facts, self.p_value)
-        driver, strength = bends.effect.driver, self.most.noncentrality
-        gain = bends.gain.value
-        return Answer("unknown-effect", sentence, self.p_value, ranked, driver, [], strength, gain, remains=True)
+        return Answer("unknown-effect", sentence, self.p_value, ranked, bends.effect.driver, [], remains=True)
 
     def _bends(self) -> tuple[Candidate, bool] | None:
         """What explains most, for sure, but cannot be the friction in whose place it stands: a part, or too far."""
@@ -160,8 +154,7 @@ class _Family:
         left = None if generic is None else without_a_name(fit, gathered, generic, p_value)
         stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
         sentence = left or answer_in_words("nothing", p_value, self.examined, None, stretches)
-        strength = self.best.noncentrality
-        return Answer("nothing", sentence, p_value, self.examined, None, [], strength, remains=left is not None)
+        return Answer("nothing", sentence, p_value, self.examined, None, [], remains=left is not None)
 
 
 def _holds(explained: Fit, candidate: Candidate) -> bool:

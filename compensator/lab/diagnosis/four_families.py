@@ -9,8 +9,8 @@ from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.few_rows import few_reversals
 from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
-from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.diagnosis.families import answer_of
+from compensator.lab.diagnosis.unfollowed import with_curve
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
@@ -67,11 +67,25 @@ class FourFamilies:
         return len(np.unique(self.gathered.fit.dataset.block_index[self.gathered.rows]))
 
     def first(self) -> Answer:
-        """The answer: that of the first family with one, but for a memory effect that predicts motion better."""
-        first = _first_of(self.in_order)
-        if first is self.steady and self.memory is not None and _predicts_better(self.memory, first, "moving"):
-            return self.memory
+        """The answer: that of the first family with one, but for a name of a later family that goes before it."""
+        answers = [one for one in self.in_order if one.verdict != "nothing"] or [self.steady]
+        first = answers[0]
+        for one in answers[1:]:
+            if one.explained is not None and self._goes_before(
+                one.explained, "sliding" if one is self.chain else "moving", first
+            ):
+                first = one
         return first
+
+    def _goes_before(self, named: Fit, rows: MotionRows, first: Answer) -> bool:
+        """Whether a model with a name goes before another answer.
+
+        Before another name, where it predicts other trials better for sure; before a curve, unless that does.
+        """
+        if first.verdict == "missing":
+            return first.explained is not None and _predicts_better(named, first.explained, rows)
+        curve = with_curve(self.gathered.fit, first.driver)
+        return curve is None or not _predicts_better(curve, named, rows)
 
 
 def judged(fit: Fit) -> FourFamilies:
@@ -90,8 +104,7 @@ def judged(fit: Fit) -> FourFamilies:
         )
     assert gathered.noise is not None
     progress.enter(SCREENING)
-    stretch = fit.dataset.block_index[gathered.rows]
-    generic = screen(gathered.bases, gathered.curves.blocks, stretch, noise=gathered.noise)
+    generic = screen_against_noise(gathered.bases, gathered.curves.blocks, gathered.noise)
     sliding = screen_against_noise(gathered.bases, physical, gathered.noise)
     progress.enter(STEADY)
     steady = answer_of(fit, gathered, sliding, generic)
@@ -117,34 +130,9 @@ def _memory_of(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
     return answer_of(wide, gathered, screening, None), gathered.left_out
 
 
-def _predicts_better(one: Answer, other: Answer, rows: MotionRows) -> bool:
-    """Whether one family's name predicts rows better than another's: its gain is above zero for sure."""
-    if one.explained is None or other.explained is None:
-        return False
-    errors = [held_out(widened(fit, rows), rows) for fit in (one.explained, other.explained)]
-    return predicts_better(*errors)
-
-
-def _first_of(families: list[Answer]) -> Answer:
-    """The first family with an answer, unless the measuring chain, or another family, explains what it is better.
-
-    A curve that no effect follows gives way to an effect of the chain that explains more, and to a family that is
-    about as sure; a name of steady sliding to one of the chain that has more evidence, and predicts better for sure.
-    """
-    steady, chain = families[0], families[-1]
-    first = next((answer for answer in families if answer.verdict != "nothing"), steady)
-    unknown = first.verdict == "unknown-effect"
-    if unknown and chain.verdict == "missing" and chain.gain > first.gain and _is_about_as_sure(chain, first):
-        return chain
-    if first is steady and chain.strength > steady.strength and _predicts_better(chain, steady, "sliding"):
-        return chain
-    if first is not steady or not unknown:
-        return first
-    return next((a for a in families[1:] if a.verdict != "nothing" and _is_about_as_sure(a, steady)), steady)
-
-
-def _is_about_as_sure(one: Answer, steady: Answer) -> bool:
-    return one.strength >= FORMULA_SHARE * steady.strength
+def _predicts_better(one: Fit, other: Fit, rows: MotionRows) -> bool:
+    """Whether a model predicts rows of other trials better than another, for sure."""
+    return predicts_better(*(held_out(widened(fit, rows), rows) for fit in (one, other)))
 
 
 def _least_p(screening: Screening) -> dict[str, float]:

@@ -11,17 +11,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.chance import SIGNIFICANT
-from compensator.lab.diagnosis.bending import bending
 from compensator.lab.diagnosis.confirmation import LEAST_GAIN, is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis, Picture
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
-from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Effect
 from compensator.lab.effects.free_curve import FORCE, name_of, way_of
 from compensator.lab.errors import NotApplicableError, UnusableDataError
 from compensator.lab.model.fit import fit_effects, widened, with_columns
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.gain import Gain, held_out_gain
+from compensator.lab.model.gain import Gain, held_out_gain, predicts_better
+from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import determination
 from compensator.lab.rows.drivers import DRIVERS
@@ -33,8 +32,8 @@ from compensator.lab.screening.evidence import Evidence, Screening, among_all, s
 
 def unfollowed(
     fit: Fit, gathered: Candidates, generic: Screening, examined: list[Candidate], best: Evidence
-) -> tuple[Evidence, float, float] | None:
-    """The free curve, or hysteresis, that no formula follows, its chance, and its gain; None where all are followed.
+) -> Evidence | None:
+    """The free curve, or hysteresis, that no formula follows; None where all are followed.
 
     Args:
         fit: the model.
@@ -43,20 +42,19 @@ def unfollowed(
         examined: candidates, best first.
         best: the evidence for the first of them.
     """
-    found = []
-    curve, bent = _curve(fit, gathered, generic), bending(fit, gathered)
-    if curve is not None and not (
-        _follows(best, examined[0], curve[0]) or _leaves_nothing(gathered, examined[0], best, curve[0])
-    ):
-        found.append((curve[0], among_all(generic.p_value), curve[1]))
-    if bent is not None and (not _follows(best, examined[0], bent.evidence) or bent.predicts_best(fit, examined)):
-        found.append((bent.evidence, among_all(bent.evidence.p_value), bent.gain))
-    return max(found, key=lambda one: one[0].noncentrality, default=None)
+    found = _curve(fit, gathered, generic)
+    if found is None:
+        return None
+    curve, errors = found
+    followed = examined[0].physical and best.noncentrality >= FORMULA_SHARE * curve.noncentrality
+    if (followed and not _predicts_best(errors, examined)) or _leaves_nothing(gathered, examined[0], best, curve):
+        return None
+    return curve
 
 
-def _follows(best: Evidence, examined: Candidate, curve: Evidence) -> bool:
-    """Whether a formula that can be it explains about as much as a free curve, which has more freedom."""
-    return examined.physical and best.noncentrality >= FORMULA_SHARE * curve.noncentrality
+def _predicts_best(errors: HeldOut, examined: list[Candidate]) -> bool:
+    """Whether a curve predicts other trials better, for sure, than the model with any of the effects that can be it."""
+    return all(predicts_better(errors, one.errors) for one in examined if one.physical and one.errors is not None)
 
 
 def _leaves_nothing(gathered: Candidates, candidate: Candidate, best: Evidence, curve: Evidence) -> bool:
@@ -71,8 +69,8 @@ def _leaves_nothing(gathered: Candidates, candidate: Candidate, best: Evidence, 
     return score_of(given.bases, curve.block, given.noise) <= 0.0
 
 
-def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> tuple[Evidence, float] | None:
-    """The free curve with the best evidence, and its gain, if that is no luck and it helps on other trials for sure.
+def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> tuple[Evidence, HeldOut] | None:
+    """The free curve with the best evidence, and its held-out errors, if it is no luck, and helps for sure.
 
     A curve has more coefficients than a formula: every chain bends a little of what it measures.
     """
@@ -81,10 +79,10 @@ def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> tuple[Evidence
     best = generic.evidence[0]
     if best.score <= 0.0 or best.p_value > SIGNIFICANT:
         return None
-    with_curve = with_columns(fit, best.block.name, gathered.curves.splines[best.block.name].columns)
     known = determination(fit)
-    gain = held_out_gain(held_out(fit, None, known), held_out(with_curve, None, known))
-    return (best, gain.value) if gain.low >= LEAST_GAIN else None
+    grown = with_columns(fit, best.block.name, gathered.curves.columns[best.block.name])
+    before, after = (held_out(model, None, known) for model in (fit, grown))
+    return (best, after) if held_out_gain(before, after).low >= LEAST_GAIN else None
 
 
 @dataclass(frozen=True)
@@ -104,19 +102,25 @@ class Provisional:
     picture: Picture
 
 
-def provisional(fit: Fit, diagnosis: Diagnosis) -> Provisional | None:
-    """The curve that a diagnosis of "unknown-effect" offers; None for other answers, or where it cannot be fitted."""
-    name = None if diagnosis.driver is None else name_of(diagnosis.driver)
+def with_curve(fit: Fit, driver: str | None) -> Fit | None:
+    """The model and the curve over what an answer says that the residual varies with; None where it cannot be had."""
+    name = None if driver is None else name_of(driver)
     if name is None or name in fit.names:
         return None
-    effect = effect_named(name)
-    rows = fit.dataset.choice_for([*fit.effects, effect])
     try:
-        wide = widened(fit, rows)
-        filled = fit_effects(fit.dataset, [*fit.names, name], fit.training)
+        return fit_effects(fit.dataset, [*fit.names, name], fit.training)
     except (NotApplicableError, UnusableDataError):
         return None
-    before, after = held_out(wide, rows), held_out(filled, rows)
+
+
+def provisional(fit: Fit, diagnosis: Diagnosis) -> Provisional | None:
+    """The curve that a diagnosis of "unknown-effect" offers; None for other answers, or where it cannot be fitted."""
+    filled = with_curve(fit, diagnosis.driver)
+    if filled is None:
+        return None
+    effect = filled.effects[-1]
+    rows = filled.dataset.choice_for(filled.effects)
+    before, after = held_out(widened(fit, rows), rows), held_out(filled, rows)
     return Provisional(effect, before.relative, after.relative, held_out_gain(before, after), _picture(filled, effect))
 
 

@@ -54,20 +54,3 @@ class Base:
         added = orthonormal(rest - self.basis @ (self.basis.T @ rest))  # twice is enough (Kahan, Parlett)
         residual = self.residual - added @ (added.T @ self.residual)
         return Base(np.column_stack([self.basis, added]), residual)
-
-
-@dataclass(frozen=True)
-class DriverBlock:
-    """One driver's spline over all rows.
-
-    Attributes:
-        driver: key of `DRIVERS`.
-        way: of `WAYS`, in which it acts.
-        columns: filtered like the effort, shape (N, k).
-        knots: of the spline, in the driver's unit, shape (k,).
-    """
-
-    driver: str
-    way: str
-    columns: FloatArray
-    knots: FloatArray

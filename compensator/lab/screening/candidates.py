@@ -1,6 +1,6 @@
 """What a fitted model may be missing: blocks to be screened, and what they are judged on top of."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -9,7 +9,7 @@ import numpy as np
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.model.fitted import STATIC, Fit
 from compensator.lab.recordings.recording import BoolArray, FloatArray
-from compensator.lab.screening.base import HYSTERESIS_DRIVER, Base, Block, DriverBlock
+from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.stops import StopToStop
 
@@ -17,46 +17,31 @@ WITH_CHAIN = 0  # base with all columns that the measuring chain can produce; ot
 
 
 class Curves:
-    """Driver splines, made when they are first asked for: effects with memory are judged without them.
+    """Free curves, made when they are first asked for: effects with memory are judged without them.
 
     Args:
-        splines: makes those of all drivers.
-        hysteresis: makes the columns of a free hysteresis of position, over all rows, shape (N, k).
+        made: the columns of all of them over all rows, shape (N, k) each, by name.
         weighted: picks and weights the tested rows of columns (N, k).
     """
 
     def __init__(
-        self,
-        splines: Callable[[], list[DriverBlock]],
-        hysteresis: Callable[[], FloatArray],
-        weighted: Callable[[FloatArray], FloatArray],
+        self, made: Callable[[], Mapping[str, FloatArray]], weighted: Callable[[FloatArray], FloatArray]
     ) -> None:
-        self._splines, self._hysteresis, self._weighted = splines, hysteresis, weighted
+        self._made, self._weighted = made, weighted
 
     def evened(self, noise: Noise) -> "Curves":
         """The same columns, their blocks evened."""
-        splines, hysteresis = lambda: list(self.splines.values()), lambda: self.hysteresis_columns
-        return Curves(splines, hysteresis, lambda columns: noise.evened(self._weighted(columns)))
+        return Curves(lambda: self.columns, lambda columns: noise.evened(self._weighted(columns)))
 
     @cached_property
-    def splines(self) -> dict[str, DriverBlock]:
-        """By block name."""
-        return {f"{one.driver}{one.way}": one for one in self._splines()}
+    def columns(self) -> Mapping[str, FloatArray]:
+        """By name, over all rows, shape (N, k) each."""
+        return self._made()
 
     @cached_property
     def blocks(self) -> list[Block]:
-        """The splines as blocks to be screened."""
-        return [Block(name, self._weighted(spline.columns), 0, 1) for name, spline in self.splines.items()]
-
-    @cached_property
-    def hysteresis_columns(self) -> FloatArray:
-        """Of a free hysteresis of position, over all rows, shape (N, k)."""
-        return self._hysteresis()
-
-    @cached_property
-    def hysteresis(self) -> Block:
-        """The same as a block to be screened."""
-        return Block(HYSTERESIS_DRIVER, self._weighted(self.hysteresis_columns), 0, 1)
+        """The same as blocks to be screened."""
+        return [Block(name, self._weighted(columns), 0, 1) for name, columns in self.columns.items()]
 
 
 @dataclass(frozen=True)

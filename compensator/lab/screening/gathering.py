@@ -17,7 +17,7 @@ from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.candidates import Candidates, Curves, noise_of
 from compensator.lab.screening.discrepancy import model_columns
 from compensator.lab.screening.evidence import most_likely, score_of
-from compensator.lab.screening.generic import driver_blocks, hysteresis_columns
+from compensator.lab.screening.generic import free_curves
 from compensator.lab.screening.nuisance import nuisance_columns
 
 
@@ -45,7 +45,7 @@ def _ground(fit: Fit, show_in: MotionRows) -> "tuple[Candidates, _Builder]":
     weights = row_weights(dataset, fit.residual, rows) * dataset.steadiness[rows]
     weights = weights * bounded_influence(fit.residual[rows], weights)
     builder = _Builder(fit, show_in, rows, weights)
-    curves = Curves(partial(driver_blocks, dataset), partial(hysteresis_columns, dataset), builder.weighted)
+    curves = Curves(partial(free_curves, dataset), builder.weighted)
     return Candidates(fit, show_in, rows, weights, builder.bases, [], curves, {}), builder
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from compensator.lab.comparison.comparison import compare, repeatability_floor
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.effects.free_curve import FORCE
+from compensator.lab.effects.free_curve import FORCE, way_of
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.regimes import Regime
@@ -15,7 +15,7 @@ from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.rows.drivers import available
 from compensator.lab.rows.picture import binned_mean
-from compensator.lab.screening.generic import driver_blocks
+from compensator.lab.screening.generic import free_curves, knots_of
 from tests.lab.synthetic import FACTS, Bench, Joint, Plan, plans, recordings
 
 DEFAULT = default_effects(FACTS)
@@ -101,13 +101,12 @@ def test_drivers_are_what_is_measured_and_varies(repeated):
     found = available(repeated.dataset)
     assert {"velocity", "position", "acceleration", "load_kg", "time"} <= set(found)
     assert "temperature" not in found  # constant
-    blocks = driver_blocks(repeated.dataset)
-    assert {block.driver for block in blocks} >= {"velocity", "position", "load_kg"}
-    for block in blocks:
-        assert len(block.knots) <= 7
-        assert np.isfinite(block.columns).all()
-        if block.way == FORCE:
-            assert block.columns.sum(axis=1) == pytest.approx(1.0, abs=1e-3)  # hats sum to one, filtered or not
+    assert set(knots_of(repeated.dataset)) >= {"velocity", "position", "load_kg"}
+    assert all(len(knots) <= 7 for knots in knots_of(repeated.dataset).values())
+    for name, columns in free_curves(repeated.dataset).items():
+        assert np.isfinite(columns).all()
+        if way_of(name) in ((variable, FORCE) for variable in knots_of(repeated.dataset)):
+            assert columns.sum(axis=1) == pytest.approx(1.0, abs=1e-3)  # hats sum to one, filtered or not
 
 
 def test_binned_means_and_their_bars():
