@@ -11,6 +11,7 @@ from bench.study.models.comparison import FittedParameter
 from bench.study.models.stages import CHANGE, FITTING, JUDGING
 from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates, compare_breakaway, held_out_both
+from compensator.lab.diagnosis.physical import why_impossible
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, held_out_gain
@@ -65,7 +66,9 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     gain = held_out_gain(before, after)
     starts = held_out_both(old, new) if any(effect.breakaway for effect in changed) else None
     only_there = all(effect.rows == "breakaway" for effect in changed)
-    sentence = "" if only_there else _sentence(what, "held-out error", before.relative, after.relative, gain)
+    impossible = next((found for name in added if (found := why_impossible(fit, name))), "")
+    error = "held-out error" if rows == material.dataset.rows else "held-out error, near reversals too,"
+    sentence = "" if only_there else _sentence(what, error, before.relative, after.relative, gain, impossible)
     if starts is not None:
         error = "held-out error of the breakaway effort"
         sentence += " " + _sentence(what, error, starts[0].relative, starts[1].relative, held_out_gain(*starts))
@@ -109,8 +112,10 @@ def _changed(before: HeldOut, after: HeldOut, parameters: list[FittedParameter])
     )
 
 
-def _sentence(what: str, error: str, before: float, after: float, gain: Gain) -> str:
-    if gain.low > 0.0:
+def _sentence(what: str, error: str, before: float, after: float, gain: Gain, impossible: str = "") -> str:
+    if impossible:
+        advice = f"But {impossible}: leave it out."
+    elif gain.low > 0.0:
         advice = "It helps: keep it."
     elif gain.high < 0.0:
         advice = "It harms: drop it."

@@ -7,7 +7,7 @@ import numpy as np
 from compensator.lab import progress
 from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.physical import is_physical
+from compensator.lab.diagnosis.physical import TOLD, is_physical, is_told
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import MotionRows
@@ -157,5 +157,6 @@ def _candidate(
         physical=is_physical(gathered, item),
         picture=picture_of(gathered, item),
         errors=after,
+        refused=TOLD if is_told(gathered, item) else "",
         rows=gathered.show_in,
     )

@@ -9,7 +9,13 @@ from compensator.lab.diagnosis.answer import EXAMINED, Answer
 from compensator.lab.diagnosis.confirmation import is_confirmed, is_sure
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import as_in_the_ladder, best_shapes, examine, share_of
-from compensator.lab.diagnosis.physical import is_before_scan, is_past_scan, is_too_small, is_within_bounds
+from compensator.lab.diagnosis.physical import (
+    is_before_scan,
+    is_past_scan,
+    is_too_small,
+    is_within_bounds,
+    why_impossible,
+)
 from compensator.lab.diagnosis.remaining import what_remains, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
 from compensator.lab.diagnosis.wording import answer_in_words, bending_in_words
@@ -84,6 +90,8 @@ class _Family:
         if curve is None:
             return None
         driver, p_value = curve.block.name, among_all(generic.p_value)
+        for index, one in enumerate(self.examined):
+            self.examined[index] = replace(one, refused=f"explains much less than a curve over {driver}")
         sentence = answer_in_words("unknown-effect", p_value, self.examined, driver)
         return Answer("unknown-effect", sentence, p_value, self.examined, driver, [], remains=True)
 
@@ -112,8 +120,10 @@ class _Family:
             return f"explains much less than {self.most.block.name}, which cannot be it"
         explained = fit_effects(fit.dataset, [*fit.names, candidate.effect.name], fit.training)
         first = as_in_the_ladder(candidate, fit, explained, show_in)
-        if not _holds(explained, first):
+        if not is_confirmed(first):
             return "not so in the model with all shapes found anew"
+        if impossible := why_impossible(explained, candidate.effect.name):
+            return impossible
         examined = [first, *(one for one in self.examined if one is not candidate)]
         sentence = answer_in_words("missing", own_chance, examined, None)
         notes = what_remains(explained, self.gathered, candidate.effect.name)
@@ -155,19 +165,3 @@ class _Family:
         stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
         sentence = left or answer_in_words("nothing", p_value, self.examined, None, stretches)
         return Answer("nothing", sentence, p_value, self.examined, None, [], remains=left is not None)
-
-
-def _holds(explained: Fit, candidate: Candidate) -> bool:
-    """Whether a name is one in the model that would be had, too, with all shapes found anew.
-
-    A shape near reversals may be one there that the owner told of: that of the evidence was only the next that could be
-    missing. In steady sliding it may be one far from that of the evidence, which predicts no better. A coefficient that
-    its lower bound holds would be less than the effect can be.
-    """
-    term = next(term for term in explained.terms if term.effect.name == candidate.effect.name)
-    least = [low for low, _ in term.effect.ranges_in(explained.dataset.effort_definition.quantity)]
-    if not is_confirmed(candidate) or bool(np.any(term.at_bound & (term.coefficients <= least))):
-        return False
-    if term.effect.told(explained.dataset.facts, term.shape):
-        return False
-    return term.effect.holds is None or term.effect.holds(term.shape)

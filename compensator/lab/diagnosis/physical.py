@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import VERY_STRONG, Evidence, score_of
 
 UNSURE = 2.0  # standard errors: a coefficient so near to a bound may lie on either side of it
+TOLD = "the rig tells of as much already"
 ROUNDING = 1e-6  # of a shape that was looked for by its logarithm
 
 
@@ -19,15 +21,35 @@ def is_physical(gathered: Candidates, item: Evidence) -> bool:
     return within and is_possible(gathered, item)
 
 
+def why_impossible(fit: Fit, name: str) -> str:
+    """Why what a fitted model has of an effect cannot be it, in words; empty where it can.
+
+    A shape near reversals may be one that the owner told of. A coefficient that its lower bound holds would be less
+    than the effect can be.
+    """
+    term = next(term for term in fit.terms if term.effect.name == name)
+    least = [low for low, _ in term.effect.ranges_in(fit.dataset.effort_definition.quantity)]
+    if term.effect.told(fit.dataset.facts, term.shape):
+        return TOLD
+    if np.any(term.at_bound & (term.coefficients <= least)):
+        return "it would have to be less than it can be"
+    if term.effect.holds is not None and not term.effect.holds(term.shape):
+        return "of this shape it is something else"
+    return ""
+
+
 def is_possible(gathered: Candidates, item: Evidence) -> bool:
     """Whether the freely fitted coefficients are within bounds, and as large as what they stand in the place of.
 
     What the measuring chain makes near reversals is nothing physical, and what the owner tells of is not missing.
     """
     fits = is_within_bounds(gathered, item) and not is_too_small(gathered, item)
-    if effect_named(item.block.name).told(gathered.fit.dataset.facts, item.block.shape):
-        return False
-    return fits and not is_made_by_chain(gathered, item)
+    return fits and not is_told(gathered, item) and not is_made_by_chain(gathered, item)
+
+
+def is_told(gathered: Candidates, item: Evidence) -> bool:
+    """Whether the owner tells of so much of it."""
+    return effect_named(item.block.name).told(gathered.fit.dataset.facts, item.block.shape)
 
 
 def is_made_by_chain(gathered: Candidates, item: Evidence) -> bool:

@@ -37,10 +37,10 @@ def answer_in_words(
             f"Something is missing, and it is none of the catalogue: it varies with {driver}; the nearest formula, "
             f"{best.effect.title.lower()}, {why} ({chance_in_words(p_value)}).{look}"
         )
-    gain = best.gain.in_words(best.before, best.after, 0)
+    gain, where = best.gain.in_words(best.before, best.after, 0), ", near reversals too," * (best.rows == "moving")
     sure = "" if best.gain.low > 0.0 else ", but not for sure"
     return (
-        f"{named_in_words(best, 'trials')}: adding it changes the held-out error from {best.before:.2%} to "
+        f"{named_in_words(best, 'trials')}: adding it changes the held-out error{where} from {best.before:.2%} to "
         f"{best.after:.2%}{sure} ({gain}; {chance_in_words(p_value)})."
     )
 

@@ -14,9 +14,10 @@ from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.diagnosis.note import Note
+from compensator.lab.diagnosis.physical import TOLD, why_impossible
 from compensator.lab.effects.catalogue import catalogue, default_effects
 from compensator.lab.errors import UnusableDataError
-from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fit import fit_effects, fit_model
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
@@ -158,9 +159,12 @@ def test_only_what_gives_more_than_the_stiffness_that_is_known_is_missing(share,
 def test_only_more_free_play_than_is_known_is_missing(told_rad, named):
     made = recordings(Joint(extra=loose_teeth), seed=4)
     told = replace(FACTS, arm_inertia_kg_m2=1.1 * ARM_KG_M2, backlash_rad=told_rad, arm_moment_n_m=ARM_N_M)
-    found = diagnose(fit_model(make_dataset(made, told, Processing()), DEFAULT))
+    fit = fit_model(make_dataset(made, told, Processing()), DEFAULT)
+    found = diagnose(fit)
     loose = found.verdict == "missing" and found.candidates[0].effect.name == "backlash"
     assert loose == named, found.sentence
+    added = fit_effects(fit.dataset, [*DEFAULT, "backlash"], fit.training)
+    assert why_impossible(added, "backlash") == ("" if named else TOLD)
 
 
 @pytest.mark.parametrize(("bend_rad", "torque_n_m"), [(0.3, 0.02), (0.6, 0.1)])

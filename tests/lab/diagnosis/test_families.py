@@ -82,8 +82,7 @@ def test_in_steady_sliding_a_name_must_hold_in_the_model_that_would_be_had(monke
 def test_what_does_not_hold_leaves_its_place_to_the_next(monkeypatch, extra, cannot_be, verdict, first):
     fit = fit_model(make_dataset(recordings(Joint(extra=extra), seed=4), FACTS, Processing()), default_effects(FACTS))
     gathered = with_noise(gather(fit))
-    holds = families._holds
-    monkeypatch.setattr(families, "_holds", lambda fit, one: one.effect.name != cannot_be and holds(fit, one))
+    monkeypatch.setattr(families, "why_impossible", lambda _fit, name: "it cannot be" if name == cannot_be else "")
     assert gathered.noise is not None
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
     answer = answer_of(fit, gathered, screen_against_noise(gathered.bases, blocks, gathered.noise), None)
