@@ -127,7 +127,8 @@ class _Family:
         examined = [first, *(one for one in self.examined if one is not candidate)]
         sentence = answer_in_words("missing", own_chance, examined, None)
         notes = what_remains(explained, self.gathered, candidate.effect.name)
-        return Answer("missing", sentence, own_chance, examined, None, notes, bool(notes), explained)
+        remains, evidence = bool(notes), best.noncentrality
+        return Answer("missing", sentence, own_chance, examined, None, notes, remains, explained, evidence)
 
     def _chance_of(self, candidate: Candidate) -> float:
         """The chance of the effect that is to be named, if any of its family is no luck."""

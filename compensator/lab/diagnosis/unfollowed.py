@@ -25,6 +25,7 @@ from compensator.lab.model.validation import held_out
 from compensator.lab.model.weights import determination
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.rows.picture import binned_mean
+from compensator.lab.screening.base import HYSTERESIS_DRIVER
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.discrepancy import open_columns
 from compensator.lab.screening.evidence import Evidence, Screening, among_all, score_of
@@ -47,7 +48,9 @@ def unfollowed(
         return None
     curve, errors = found
     followed = examined[0].physical and best.noncentrality >= FORMULA_SHARE * curve.noncentrality
-    if (followed and not _predicts_best(errors, examined)) or _leaves_nothing(gathered, examined[0], best, curve):
+    # a curve over a variable adds up all that is missing there; what bends along is one thing, whatever imitates it
+    bends = curve.block.name == HYSTERESIS_DRIVER and _predicts_best(errors, examined)
+    if (followed and not bends) or _leaves_nothing(gathered, examined[0], best, curve):
         return None
     return curve
 
