@@ -79,11 +79,11 @@ class FourFamilies:
         """Whether a name goes before another answer: before a curve, unless that predicts other trials better for sure.
 
         Before another name, where it does so itself. A delay lowers many errors a little: one of the chain needs more
-        evidence than a name of the joint, too.
+        evidence, too, of the same rows.
         """
         rows: MotionRows = "sliding" if one is self.chain else "moving"
         if first.verdict == "missing":
-            enough = one is not self.chain or one.evidence > first.evidence
+            enough = one is not self.chain or (first is self.steady and one.evidence > first.evidence)
             return enough and first.explained is not None and _predicts_better(named, first.explained, rows)
         curve = with_curve(self.gathered.fit, first.driver)
         return curve is None or not _predicts_better(curve, named, rows)
@@ -105,7 +105,8 @@ def judged(fit: Fit) -> FourFamilies:
         )
     assert gathered.noise is not None
     progress.enter(SCREENING)
-    generic = screen_against_noise(gathered.bases, gathered.curves.blocks, gathered.noise)
+    stretch = fit.dataset.block_index[gathered.rows]
+    generic = screen(gathered.bases, gathered.curves.blocks, stretch, noise=gathered.noise)
     sliding = screen_against_noise(gathered.bases, physical, gathered.noise)
     progress.enter(STEADY)
     steady = answer_of(fit, gathered, sliding, generic)

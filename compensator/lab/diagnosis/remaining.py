@@ -14,8 +14,8 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import row_weights
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Screening, screen_against_noise
-from compensator.lab.screening.gathering import gather_curves, with_noise
+from compensator.lab.screening.evidence import Screening, screen
+from compensator.lab.screening.gathering import gather_curves
 
 
 def without_a_name(fit: Fit, gathered: Candidates, generic: Screening, p_value: float) -> str | None:
@@ -43,9 +43,7 @@ def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[Note]:
     left = left_over(grown)
     if not left.is_more_than_noise:
         return []
-    grown = with_noise(grown)
-    assert grown.noise is not None
-    rest = screen_against_noise(grown.bases, grown.curves.blocks, grown.noise)
+    rest = screen(grown.bases, grown.curves.blocks, grown.fit.dataset.block_index[grown.rows])
     if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
         variable, way = way_of(rest.evidence[0].block.name)
         return [_structure_remains(name, DRIVERS[variable].title, way)]

@@ -66,7 +66,9 @@ class Screening:
         return self.p_value if self.chance is None or own <= least else self.chance(own)
 
 
-def screen(bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, seed: int = 0) -> Screening:
+def screen(
+    bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, seed: int = 0, noise: Noise | None = None
+) -> Screening:
     """Judge every block by flips of signs.
 
     The joint null is had by flipping the signs of whole stretches of the score (wild bootstrap): shape scanning and
@@ -77,13 +79,14 @@ def screen(bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, se
         blocks: candidates.
         stretch: independent stretch of each row, shape (n,).
         seed: of the flips.
+        noise: of the rows, for scores to be held against those of `screen_against_noise`.
     """
     _, labels = np.unique(stretch, return_inverse=True)
     flips = _sign_flips(int(labels.max()) + 1, seed)
     evidence, lowest = [], np.ones(len(flips))
     inflation = max(inflation_of(base.residual) for base in bases)
     for block in blocks:
-        judged = _judge(bases[block.base], block, labels, flips, inflation)
+        judged = _judge(bases[block.base], block, labels, flips, inflation, noise)
         if judged is not None:
             evidence.append(judged[0])
             lowest = np.minimum(lowest, judged[1])
@@ -246,7 +249,7 @@ def _price(block: Block, directions: FloatArray, inflation: float) -> float:
 
 
 def _judge(
-    base: Base, block: Block, labels: IntArray, flips: FloatArray, inflation: float
+    base: Base, block: Block, labels: IntArray, flips: FloatArray, inflation: float, noise: Noise | None
 ) -> tuple[Evidence, FloatArray] | None:
     directions = new_directions(base, block)
     rank = directions.shape[1]
@@ -254,7 +257,7 @@ def _judge(
         return None
     share = directions.T @ base.residual
     price = _price(block, directions, inflation)
-    likelihood = _gain(base, directions, inflation, None)
+    likelihood = _gain(base, directions, inflation, noise)
     by_stretch = np.zeros((int(labels.max()) + 1, rank))
     np.add.at(by_stretch, labels, directions * base.residual[:, None])
     p_values = _robust_p(by_stretch, np.vstack([np.ones(len(by_stretch)), flips]))
