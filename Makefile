@@ -42,7 +42,7 @@ test-services: $(STAMP)  ## those that the wall clock times: services and browse
 	$(BIN)/pytest --numprocesses 2 -m wall_clock --ignore=tests/drivers
 
 test-drivers: $(STAMP)  ## of these, drivers on real ports: a cycle that is late is a fault there
-	$(BIN)/pytest --numprocesses 2 -m wall_clock tests/drivers
+	$(BIN)/pytest --numprocesses $$($(BIN)/python -m tests.devices.turns) -m wall_clock tests/drivers
 
 test-virtual: $(STAMP)  ## drivers and simulated devices in one process, in virtual time: a busy machine changes nothing
 	$(BIN)/pytest -p tests.virtual.plugin --numprocesses auto -m virtual_time tests/drivers

@@ -17,10 +17,14 @@ CONFORMANCE = "tests/drivers/conformance/"
 FUZZ = "tests/fuzz/"
 LONG = (
     "canopen-socketcand",
-    "roboclaw",
     "modbus-tcp",
+    "roboclaw",
     "canopen",
     "tests/drivers/test_follow.py",
+    "tests/drivers/actuators/test_follow.py",
+    "tests/drivers/canopen/test_faults.py",
+    "tests/drivers/actuators/test_twins.py",
+    "tests/drivers/odrive/test_foreign_peer.py",
     "tests/browser/test_walk.py",
     "tests/browser/test_tour.py",
     "tests/stopping/test_commission.py",

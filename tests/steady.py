@@ -12,11 +12,13 @@ from collections import Counter
 from pathlib import Path
 from xml.etree import ElementTree
 
+from tests.devices.turns import are_granted
 from tests.paths import ROOT
 
 RUNS = 20
 OUT = ROOT / "out" / "steady"
-PARTS = {"services": "--ignore=tests/drivers", "drivers": "tests/drivers"}  # one after the other, as in `make test`
+# one after the other, in as many processes as in `make test`
+PARTS = {"services": ("2", "--ignore=tests/drivers"), "drivers": ("3" if are_granted() else "2", "tests/drivers")}
 
 
 def failed_of(report: Path) -> tuple[int, list[str]]:
@@ -34,14 +36,15 @@ def run(part: str, number: int) -> list[str]:
     name = f"{part}-{number:02}"
     report = OUT / f"{name}.xml"
     report.unlink(missing_ok=True)
+    processes, where = PARTS[part]
     words = [
         sys.executable,
         "-m",
         "pytest",
-        "--numprocesses=2",
+        f"--numprocesses={processes}",
         "-m",
         "by_seconds",
-        PARTS[part],
+        where,
         f"--junitxml={report}",
     ]
     began_s = time.monotonic()

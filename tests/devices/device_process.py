@@ -14,8 +14,6 @@ long after its own deed the motor was without power.
 
 import json
 import signal
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -24,7 +22,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from sim_backend.devices.side_channel_client import SideChannelClient
-from tests.devices.turns import DEVICE, ask_for_turns, no_turns
+from tests.devices.forked import ForkedProcess, forked
+from tests.devices.turns import DEVICE, ask_for_turns
 
 START_S = 90.0  # the first start on a machine compiles the plant
 IS_VIRTUAL = False  # `pytest -p tests.virtual.plugin`
@@ -45,7 +44,7 @@ class DeviceProcess:
     port: str
     drive: dict[str, Any]
     side: SideChannelClient
-    process: "subprocess.Popen[str]"
+    process: ForkedProcess
 
     def truth(self) -> dict[str, Any]:
         """How things really are."""
@@ -64,17 +63,14 @@ class DeviceProcess:
 
 @contextmanager
 def device_process(kind: str, *options: str) -> Iterator[DeviceProcess]:
-    """Run `friction-bench simulate-device <kind> <options>`, and end it."""
-    words = [sys.executable, "-m", "bench.cli", "simulate-device", kind, *options, "--json"]
-    with no_turns():
-        process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    """Run `friction-bench simulate-device <kind> <options> --json`, and end it."""
+    process = forked("simulate-device", kind, *options, "--json")
     killer = threading.Timer(START_S, process.kill)
     killer.start()
     try:
-        assert process.stdout is not None
         line = process.stdout.readline()
         killer.cancel()
-        assert line, f"the device did not start: {process.communicate()[1]}"
+        assert line, "the device did not start: see what it has printed"
         found = json.loads(line)
         ask_for_turns(process.pid, DEVICE)
         side = SideChannelClient(found["side_channel"])
@@ -84,10 +80,7 @@ def device_process(kind: str, *options: str) -> Iterator[DeviceProcess]:
             side.close()
     finally:
         killer.cancel()
-        if process.poll() is None:
-            process.send_signal(signal.SIGTERM)
-        try:
-            process.communicate(timeout=10)
-        except subprocess.TimeoutExpired:
+        process.send_signal(signal.SIGTERM)
+        if not process.wait(10.0):
             process.kill()
-            process.communicate()
+        process.close()

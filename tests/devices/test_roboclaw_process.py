@@ -1,7 +1,10 @@
 """The RoboClaw in a process of its own, over a pseudo-terminal."""
 
+import json
 import os
 import signal
+import subprocess
+import sys
 import time
 from binascii import crc_hqx
 from collections.abc import Iterator
@@ -126,8 +129,16 @@ def test_load_is_hung_and_nonsense_is_refused(device: DeviceProcess) -> None:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_signal_ends_it_cleanly(number: int, tmp_path: Path) -> None:
-    with device_process("roboclaw", "--link", str(tmp_path / "port")) as running:
-        running.process.send_signal(number)
-        _, complaints = running.process.communicate(timeout=20)
-        assert (running.process.returncode, complaints) == (0, "")
-        assert not (tmp_path / "port").is_symlink()
+    link = tmp_path / "port"
+    words = [sys.executable, "-m", "bench.cli", "simulate-device", "roboclaw", "--link", str(link), "--json"]
+    running = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        assert running.stdout is not None
+        assert json.loads(running.stdout.readline())["port"] == str(link)
+        running.send_signal(number)
+        _, complaints = running.communicate(timeout=20)
+    finally:
+        running.kill()
+        running.wait()
+    assert (running.returncode, complaints) == (0, "")
+    assert not link.is_symlink()

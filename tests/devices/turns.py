@@ -6,6 +6,9 @@ does not, everything runs as it is.
 
 Several tests run beside each other. So a device goes before every host, as nothing keeps a real drive waiting; and
 nothing that only starts (imports, mostly) has a priority, else it would keep the devices of other tests waiting.
+
+`python -m tests.devices.turns` prints in how many processes the tests of drivers run: three where turns are granted, so
+that nothing starves, else two.
 """
 
 import os
@@ -47,6 +50,12 @@ def _scheduled(policy: int, priority: int) -> Iterator[None]:
         os.sched_setscheduler(0, before, parameters)
 
 
+def are_granted() -> bool:
+    """Whether the system grants turns."""
+    with turns():
+        return os.sched_getscheduler(0) == os.SCHED_RR
+
+
 @contextmanager
 def own_processors(pid: int) -> Iterator[None]:
     """Keep a device and this thread on processors of their own for a while, as a drive and its host are.
@@ -67,3 +76,7 @@ def own_processors(pid: int) -> Iterator[None]:
         yield
     finally:
         os.sched_setaffinity(0, before)
+
+
+if __name__ == "__main__":
+    print(3 if are_granted() else 2)

@@ -59,7 +59,6 @@ def test_what_doctor_has_seen_is_in_the_record_of_each_run_after(on_device, tmp_
     assert watchdogs(tmp_path)[0] == "proven"
 
 
-@pytest.mark.real_wire
 def test_a_drive_that_goes_on_is_not_moved_any_further(on_device, device, monkeypatch):
     monkeypatch.setattr(device.device, "_watch", lambda: None)
     found = on_device("doctor", "--move")

@@ -106,8 +106,7 @@ def section_of(device):
     return {"kind": "modbus", "map": "friction-bench", "transport": "rtu", "port": device.path}
 
 
-@pytest.mark.real_wire
-@pytest.mark.parametrize("serve", [roboclaw, modbus])
+@pytest.mark.parametrize("serve", [pytest.param(roboclaw, marks=pytest.mark.real_wire), modbus])
 def test_a_watchdog_that_stops_the_motor_is_proven_at_the_drive(serve):
     with serve() as device:
         found = proven(**section_of(device))

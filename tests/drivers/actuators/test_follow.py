@@ -33,7 +33,7 @@ from tests.drivers.conformance.benches import configured
 from tests.drivers.robstride.test_foreign_peer import peer
 
 TORQUE_N_M = 0.02
-CYCLES, PERIOD_S = 220, 0.01  # longer than is recorded
+CYCLES, PERIOD_S = 160, 0.01  # longer than is recorded
 
 
 def swing(push):
@@ -149,7 +149,7 @@ def refuse(*_arguments, **_options):
 def test_what_it_tells_another_host_is_recorded_and_nothing_is_sent(kind, tmp_path, monkeypatch):
     monkeypatch.setattr(CanPort, "send_prepared", refuse)
     with at_work(kind, tmp_path) as (served, configuration, follower):
-        recording = record(follower, configuration, "swing", {}, 1.6, lambda: False)
+        recording = record(follower, configuration, "swing", {}, 1.2, lambda: False)
         pass_on(follower, lambda: False)
         assert served.device.axis.power.on, "nobody waits for the other host to leave: nothing goes through here"
     found = recording.channels

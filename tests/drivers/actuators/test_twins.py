@@ -17,17 +17,24 @@ from sim_backend.devices.odrive.serve import OdriveSimulation, serve_odrive
 from sim_backend.devices.robstride.motor import RobstrideMotor
 from tests.drivers.actuators.kinds import CUBEMARS, DAMIAO, MOTEUS, ODRIVE, PERIOD_S, ROBSTRIDE
 
+VIRTUAL = pytest.mark.virtual_time
+
 
 def mit(motor, motor_id):
     return lambda bus: serve_mit(motor, MitSimulation(**bus, motor_id=motor_id))
 
 
 CASES = (
-    pytest.param(DAMIAO, mit(DamiaoMotor, 1), "ESC_ID 1", id="damiao"),
+    pytest.param(DAMIAO, mit(DamiaoMotor, 1), "ESC_ID 1", id="damiao", marks=VIRTUAL),
+    # in real time: each takes the answer of the other for a question, and answers that
     pytest.param(CUBEMARS, mit(CubemarsMotor, 1), r"motor_id \(1\)", id="cubemars"),
-    pytest.param(ROBSTRIDE, mit(RobstrideMotor, 127), r"motor_id \(127\)", id="robstride"),
-    pytest.param(ODRIVE, lambda bus: serve_odrive(OdriveSimulation(**bus)), r"node_id \(0\)", id="odrive"),
-    pytest.param(MOTEUS, lambda bus: serve_moteus(MoteusBusSettings(**bus)), r"servo_id \(1\)", id="moteus"),
+    pytest.param(ROBSTRIDE, mit(RobstrideMotor, 127), r"motor_id \(127\)", id="robstride", marks=VIRTUAL),
+    pytest.param(
+        ODRIVE, lambda bus: serve_odrive(OdriveSimulation(**bus)), r"node_id \(0\)", id="odrive", marks=VIRTUAL
+    ),
+    pytest.param(
+        MOTEUS, lambda bus: serve_moteus(MoteusBusSettings(**bus)), r"servo_id \(1\)", id="moteus", marks=VIRTUAL
+    ),
 )
 
 
@@ -55,7 +62,7 @@ def test_two_of_one_id_are_refused_before_motion(kind, serve, words):
 @pytest.mark.parametrize(
     ("kind", "serve", "actuator"),
     [
-        pytest.param(*case.values[:2], actuator, id=case.id)
+        pytest.param(*case.values[:2], actuator, id=case.id, marks=VIRTUAL)
         for case, actuator in zip(CASES[2:], (RobstrideActuator, OdriveActuator, MoteusActuator), strict=True)
     ],
 )
@@ -76,6 +83,7 @@ def test_one_alone_is_not(kind, serve, words):
         drive.close()
 
 
+@VIRTUAL
 def test_two_moteus_of_one_id_on_an_adapter_are_refused_too():
     with serve_moteus(MoteusBusSettings(ids=(1, 1))) as served:
         drive = MOTEUS.on(served.path, answer_timeout_s=0.3)

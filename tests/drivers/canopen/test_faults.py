@@ -127,12 +127,12 @@ def test_a_fault_without_emcy_is_read_from_the_drive(node, drive_of):
 
 
 def test_a_fault_that_stays_cannot_be_cleared(node, drive_of):
-    drive = _moving(drive_of())
+    drive = _moving(drive_of(fault_reset_s=0.3))
     node.fail(0x4310)
     node._become = lambda _word: None
     with pytest.raises(DriveFault):
         _run(drive)
-    with pytest.raises(DriveFault, match="cannot be cleared within 2 s: 0x4310, drive temperature too high"):
+    with pytest.raises(DriveFault, match=r"cannot be cleared within 0\.3 s: 0x4310, drive temperature too high"):
         drive.clear_fault()
 
 
@@ -145,10 +145,10 @@ def test_a_stage_that_is_taken_away_without_a_fault_is_noticed(node, drive_of):
 
 
 def test_a_drive_that_does_not_switch_on_says_where_it_stays(node, drive_of):
-    drive = drive_of()
+    drive = drive_of(enable_s=0.3)
     drive.open(0.005)
     node._control = lambda: None
-    with pytest.raises(DriveStateError, match="state is 'switch on disabled' 3 s after enabling began"):
+    with pytest.raises(DriveStateError, match=r"state is 'switch on disabled' 0\.3 s after enabling began"):
         drive.enable(Mode.CURRENT)
     assert node.get(0x1016, 1) == 0
 

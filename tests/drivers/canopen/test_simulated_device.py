@@ -1,13 +1,9 @@
 """The driver and the simulated drive: two readings of the standard, one conversation.
 
-Over the network the drive is a process of its own; behind an slcan adapter it is in virtual time, and on a port of the
-operating system in `tests.drivers.conformance`.
+It is behind an slcan adapter, in virtual time. Over the network, on a port of the operating system, and where its host
+is killed, it is in `tests.drivers.conformance`.
 """
 
-import os
-import signal
-import subprocess
-import sys
 import time
 from contextlib import suppress
 
@@ -32,7 +28,7 @@ OFF = Command(Mode.OFF)
 PUSH = Command(Mode.CURRENT, 0.25)
 QUICK_STOP_S = 0.5  # the simulated drive brakes on its ramp before the power goes
 BUSY_S = 1.0  # what a busy machine may add
-VIRTUAL = pytest.mark.virtual_time
+pytestmark = pytest.mark.virtual_time
 
 
 @pytest.fixture(scope="module")
@@ -42,20 +38,7 @@ def slcan_device(tmp_path_factory):
         yield device
 
 
-@pytest.fixture(scope="module")
-def socketcand_device():
-    with started("socketcand") as device:
-        yield device
-
-
-@pytest.fixture(params=[pytest.param("slcan", marks=VIRTUAL), "socketcand"])
-def pair(request):
-    device = request.getfixturevalue(f"{request.param}_device")
-    with driver_of(device) as drive:
-        yield device, drive
-
-
-@pytest.fixture(params=[pytest.param("slcan", marks=VIRTUAL)])
+@pytest.fixture
 def slcan(slcan_device):
     with driver_of(slcan_device) as drive:
         yield slcan_device, drive
@@ -85,8 +68,8 @@ def _reconnects(drive):
     drive.disable()
 
 
-def test_the_host_closes_the_position(pair):
-    device, drive = pair
+def test_the_host_closes_the_position(slcan):
+    device, drive = slcan
     drive.open(0.005)
     target_rad = drive.exchange(OFF).position_rad + 0.3
     drive.enable(Mode.CURRENT)
@@ -98,7 +81,6 @@ def test_the_host_closes_the_position(pair):
     device.wait_for_power(on=False)
 
 
-@VIRTUAL
 @pytest.mark.parametrize("position_mode", ["cyclic", "profile"])
 def test_the_drive_closes_the_position(slcan_device, position_mode):
     with driver_of(slcan_device, position_mode=position_mode) as drive:
@@ -137,7 +119,6 @@ def test_what_is_measured_agrees_with_itself(slcan):
     assert drive.counts.missed == drive.counts.surplus == 0
 
 
-@VIRTUAL
 def test_an_epos4_is_found_and_its_duty_told():
     with started("slcan", "--family", "epos4") as device, driver_of(device, duty_sign_from_current=True) as drive:
         drive.open(0.005)
@@ -151,8 +132,8 @@ def test_an_epos4_is_found_and_its_duty_told():
         assert samples[-1].duty == pytest.approx(expected, abs=0.03)
 
 
-def test_cable_out_in_motion_ends_in_power_off_and_reconnects(pair):
-    device, drive = pair
+def test_cable_out_in_motion_ends_in_power_off_and_reconnects(slcan):
+    device, drive = slcan
     _moving(drive)
     cut_s = time.monotonic()
     device.side.ask("link", name="silent")
@@ -183,46 +164,6 @@ def test_a_port_that_goes_and_comes_back(slcan):
         except DriveConnectionError:
             time.sleep(0.1)
     _reconnects(drive)
-
-
-_HOST = """
-import sys, time
-from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
-from drivers.contract import Command, Mode
-from drivers.joint import JointScale
-bus, watchdog_s = BusSettings("slcan", sys.argv[1]), float(sys.argv[2])
-settings = CanopenSettings(bus=bus, node_id=5, watchdog_s=watchdog_s, answer_s=watchdog_s / 2)
-drive = CanopenDrive(settings, JointScale(4096, 20.0))
-drive.open(0.005)
-drive.enable(Mode.CURRENT)
-print("moving", flush=True)
-while True:
-    drive.exchange(Command(Mode.CURRENT, 0.25))
-    time.sleep(0.004)
-"""
-
-
-def test_a_host_that_is_killed_is_stopped_for_by_the_drive_itself(slcan_device):
-    device = slcan_device
-    host = subprocess.Popen(
-        [sys.executable, "-c", _HOST, device.port, str(WATCHDOG_S)], stdout=subprocess.PIPE, text=True
-    )
-    try:
-        assert host.stdout.readline() == "moving\n"
-        time.sleep(0.2)
-        device.wait_for_power(on=True)
-        killed_s = time.monotonic()
-        os.kill(host.pid, signal.SIGKILL)
-        off_s = device.wait_for_power(on=False)
-    finally:
-        host.kill()
-        host.wait()
-        host.stdout.close()
-    assert 0.0 < off_s - killed_s < WATCHDOG_S + QUICK_STOP_S + BUSY_S
-    with driver_of(device) as successor:
-        successor.open(0.005)
-        successor.clear_fault()
-        assert successor.exchange(OFF).status is Status.DISABLED
 
 
 def test_corrupted_frames_end_in_power_off_or_do_no_harm(slcan):
@@ -260,8 +201,8 @@ def test_lost_frames_are_counted_and_only_cost_their_cycle(slcan):
     assert samples[-1].number >= drive.counts.sent - 1
 
 
-def test_a_fault_of_the_drive_has_its_name(pair):
-    device, drive = pair
+def test_a_fault_of_the_drive_has_its_name(slcan):
+    device, drive = slcan
     _moving(drive)
     device.side.ask("fault", name="over-current", duration_s=0.3)
     error, _ = _raises(drive, DriveFault)
@@ -282,7 +223,6 @@ def test_torque_that_is_taken_away_is_noticed(slcan):
     device.wait_for_power(on=False)
 
 
-@VIRTUAL
 def test_the_interlock_bit_tells_safe_torque_off_until_its_circuit_is_closed(slcan_device):
     with driver_of(slcan_device, torque_off=TorqueOffBit(0x60FD, 0, 3)) as drive:
         drive.open(0.005)
@@ -305,7 +245,6 @@ def braked(request, tmp_path_factory):
         yield device, bool(request.param)
 
 
-@VIRTUAL
 def test_a_holding_brake_is_set_without_power_and_holds_when_the_host_is_gone(braked):
     device, is_own = braked
     with driver_of(device, brake=None if is_own else BrakeBit()) as drive:
@@ -322,7 +261,6 @@ def test_a_holding_brake_is_set_without_power_and_holds_when_the_host_is_gone(br
     assert device.truth()["device"]["brake"] == "set"
 
 
-@VIRTUAL
 def test_a_drive_with_a_brake_of_its_own_holds_the_arm_until_the_brake_does(braked):
     device, is_own = braked
     if not is_own:

@@ -127,6 +127,8 @@ _VARIANTS = [(kind, variant) for kind in drive_kinds().values() for variant in k
 
 SERIAL, ADAPTER, TCP = ("roboclaw", "modbus-rtu"), ("canopen",), ("modbus-tcp", "canopen-socketcand")
 """One or two benches of each way to a drive, for `real_wire`: a serial port, an adapter on one, and the network."""
+PORTS = (*SERIAL, "dynamixel", *ADAPTER, "moteus", "moteus-uart", *TCP)
+"""One bench of each code that opens a port: other servos share that of `dynamixel`, other kinds on CAN an adapter."""
 
 # of every kind that is installed: another package's driver is held to the contract by the same tests
 BENCHES: dict[str, Callable[..., Any]] = {

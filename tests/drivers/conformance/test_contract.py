@@ -8,7 +8,7 @@ import pytest
 from bench.runs.watchdog_proof import prove_watchdog
 from drivers.contract import Command, Mode, Status, Watchdog
 from drivers.errors import DriveConfigurationError, DriveError, DriveFault, DriveStateError
-from tests.drivers.conformance.benches import PERIOD_S
+from tests.drivers.conformance.benches import ADAPTER, PERIOD_S, PORTS, TCP
 
 OFF = Command(Mode.OFF)
 PUSHES = {Mode.DUTY: 0.15, Mode.CURRENT: 0.3, Mode.TORQUE: 0.015}  # enough to move the joint without load, gently
@@ -124,7 +124,7 @@ def test_a_quick_stop_ends_in_power_off(bench):
     assert Status.ENABLED not in statuses[1:]
 
 
-@pytest.mark.real_wire
+@pytest.mark.real_wire(*PORTS)
 def test_closing_takes_the_power_away_and_it_opens_again(bench):
     with bench.drive() as drive:
         for _ in range(2):
@@ -202,7 +202,7 @@ def knows_that_it_is_off(drive, command):
         return True
 
 
-@pytest.mark.real_wire
+@pytest.mark.real_wire("roboclaw", *ADAPTER, *TCP)  # whose watchdog it is, is the same in virtual time
 def test_a_silent_host_is_switched_off_by_the_drive_itself(watched):
     with watched.opened() as drive:
         mode = push_mode(drive)

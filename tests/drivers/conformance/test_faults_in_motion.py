@@ -19,6 +19,7 @@ from tests.drivers.conformance.test_faults import GENTLE_PUSH_A, LAST_WORDS_S, M
 
 RAMP_A_S, RAMP_S = 0.2, 1.0
 FRESH_S = 0.1  # oldest sample that a bench at 100 Hz acts on, as in the configuration that comes with the package
+TOO_LATE_S = 2.0 * LAST_WORDS_S  # nobody waits for an answer any more
 DELAY_S = 0.15  # of each answer: half of what is waited for one, more than a fresh sample is old
 
 
@@ -101,12 +102,12 @@ def test_answers_that_come_too_late_are_no_answers(watched):
     with watched.opened() as drive:
         swinging = Swinging(watched, drive, GENTLE_PUSH_A)  # the demand stands: a hard push ends at a limit
         before_s = time.monotonic()
-        watched.device.side.ask("link", name="delay", amount_s=3.0, direction="from-device")
+        watched.device.side.ask("link", name="delay", amount_s=TOO_LATE_S, direction="from-device")
         outcome = swinging.join()
         assert outcome.outcome == "failed", outcome
         assert any(word in outcome.reason for word in ("found", "answer", "heartbeat", "SYNC"))
         assert watched.device.wait_for_power(False) - before_s < LAST_WORDS_S + watched.watched_s + MARGIN_S
-        time.sleep(3.0)  # what is still under way comes in, and must not be taken for an answer
+        time.sleep(TOO_LATE_S)  # what is still under way comes in, and must not be taken for an answer
         opens_again(watched, drive)
 
 

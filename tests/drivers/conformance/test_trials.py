@@ -32,8 +32,7 @@ def campaigns(tmp_path_factory):
 
 @pytest.mark.parametrize("name", BENCHES)
 def test_each_trial_comes_to_its_end(campaigns, name):
-    found = campaigns(name)
-    for experiment in (found.commissioning, found.steps, found.sweep):
+    for experiment in campaigns(name).ran():
         assert experiment.source == "simulated"
         assert experiment.provenance["drive"]["product"]
 
@@ -45,15 +44,15 @@ def test_a_drive_on_a_wire_has_to_be_commissioned_and_its_load_hung(campaigns, n
     assert "sign" in found.commissioning.results["passed"]
     assert list(dict.fromkeys(found.asked)) == [
         "Take every load off the arm, and stand clear.",
-        "Hang 50 g at the tip of the arm, and stand clear.",
-        "Hang 100 g at the tip of the arm, and stand clear.",
+        *(f"Hang {1e3 * load_kg:g} g at the tip of the arm, and stand clear." for load_kg in LOADS_KG if load_kg),
     ]
 
 
 @pytest.mark.parametrize("name", BENCHES)
 def test_the_load_is_found_behind_friction(campaigns, name):
     found = campaigns(name)
-    assert found.steps.results["mean_load_current_a"] == pytest.approx(STEP_LOAD_KG * A_PER_KG, abs=TOLERANCE_A)
+    if found.steps is not None:
+        assert found.steps.results["mean_load_current_a"] == pytest.approx(STEP_LOAD_KG * A_PER_KG, abs=TOLERANCE_A)
     currents_a = {row["load_kg"]: row["load_current_a"] for row in found.sweep.results["rows"]}
     assert currents_a == pytest.approx({load_kg: load_kg * A_PER_KG for load_kg in LOADS_KG}, abs=TOLERANCE_A)
 
