@@ -82,7 +82,10 @@ def _as_recording_set(paths: Sequence[Path], rig: Rig | None) -> RecordingSet | 
     """What `write_recording_set` wrote, or files of it; None where it is something else, or is not what it says."""
     try:
         with open_container(*paths) as container:
-            headers = [table_of(container, entry, Mapping()).header for entry in entries_of(container, Mapping())]
+            entries = entries_of(container, Mapping())
+            if not all(entry.file.endswith(".csv") for entry in entries):  # other formats would be read whole here
+                return None
+            headers = [table_of(container, entry, Mapping()).header for entry in entries]
             lists_trials = container.has(TRIALS_FILE) and container.has(RIG_FILE)
         names = {name for header in headers for name in header}
         if not names <= {*CHANNELS, EVENT_COLUMN} or not (lists_trials or EVENT_COLUMN in names):
