@@ -16,7 +16,7 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.config.configuration import BenchConfiguration
     from bench.store import Store
 
-_OF_A_BENCH = re.compile(r"friction-bench (?=doctor|drive )")  # commands that are about one bench, in a message
+_OF_A_BENCH = re.compile(r"friction-bench (?=doctor|drive |study )")  # commands that are about one bench, in a message
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from bench.recording_set.text import numbers
 from bench.recording_set.text.columns import TIME, plan
 from bench.recording_set.text.table import Chunk, Table
 from bench.recording_set.text.values import decode_events
-from compensator.lab.recordings.recording import Event, FloatArray
+from compensator.lab.recordings.recording import EVENT_COLUMN, Event, FloatArray
 
 MOST_ROWS = 50_000_000
 FEWEST_ROWS = 2
@@ -49,7 +49,7 @@ def read_columns(table: Table) -> dict[str, FloatArray | list[str]]:
 
 
 def _text_columns(table: Table) -> list[str]:
-    """Columns that hold text in most rows; a word among numbers is a fault, which reading them names."""
+    """Columns that hold text in most rows, and events, which few rows have; any other word is a fault among numbers."""
     texts = dict.fromkeys(table.header, 0)
     width, decimal, rows = len(table.header), table.dialect.decimal, 0
     for chunk in table.chunks():
@@ -57,7 +57,7 @@ def _text_columns(table: Table) -> list[str]:
         rows += len(records) or chunk.text.count("\n")
         for index, name in enumerate(table.header):
             texts[name] += sum(not numbers.is_number(cells[index], decimal) for cells in records)
-    return [name for name, count in texts.items() if count > MOSTLY * rows]
+    return [name for name, count in texts.items() if name == EVENT_COLUMN or count > MOSTLY * rows]
 
 
 def _has_text(chunk: Chunk, width: int, decimal: str) -> bool:

@@ -19,6 +19,20 @@ from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.intervals import ParameterEstimate, estimates
 from compensator.lab.model.validation import held_out
 
+_ADVICE = {
+    "Adding": (
+        "It helps: keep it.",
+        "It harms: drop it.",
+        "The interval includes no change: these trials do not show that it is needed.",
+    ),
+    "Dropping": (
+        "Dropping it helps: the model is better without it.",
+        "Dropping it harms: add it again.",
+        "The interval includes no change: dropping it does no harm that these trials show.",
+    ),
+}
+"""What was done -> what to do then, where the error falls for sure, rises for sure, or neither."""
+
 
 @progress.stages(CHANGE)
 def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> Changed:
@@ -38,7 +52,7 @@ def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = 
         effect_named(effect)
     if effect in parent.effects:
         raise StudyError(f"model {parent.id} has {effect} already; its effects are: {', '.join(parent.effects)}")
-    return _change(store, load(store, study_id), parent, [*parent.effects, effect], f"Adding {effect}")
+    return _change(store, load(store, study_id), parent, [*parent.effects, effect], "Adding", effect)
 
 
 @progress.stages(CHANGE)
@@ -48,10 +62,10 @@ def drop_effect(store: Store, study_id: int, effect: str, model_id: int | None =
     if effect not in parent.effects:
         raise StudyError(f"model {parent.id} has no {effect}; its effects are: {', '.join(parent.effects)}")
     effects = [name for name in parent.effects if name != effect]
-    return _change(store, load(store, study_id), parent, effects, f"Dropping {effect}")
+    return _change(store, load(store, study_id), parent, effects, "Dropping", effect)
 
 
-def _change(store: Store, material: Material, parent: ModelRow, effects: list[str], what: str) -> Changed:
+def _change(store: Store, material: Material, parent: ModelRow, effects: list[str], done: str, effect: str) -> Changed:
     progress.enter(FITTING)
     fit = material.fit(effects)
     # a change is judged on the rows where the changed effect lives; the ladder, on those that the study counts
@@ -64,16 +78,20 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     progress.enter(JUDGING)
     before, after = held_out(old, rows), held_out(new, rows)
     gain = held_out_gain(before, after)
-    starts = held_out_both(old, new) if any(effect.breakaway for effect in changed) else None
-    only_there = all(effect.rows == "breakaway" for effect in changed)
+    starts = held_out_both(old, new) if any(one.breakaway for one in changed) else None
+    only_there = all(one.rows == "breakaway" for one in changed)
     impossible = next((found for name in added if (found := why_impossible(fit, name))), "")
     error = "held-out error" if rows == material.dataset.rows else "held-out error, near reversals too,"
-    sentence = "" if only_there else _sentence(what, error, before.relative, after.relative, gain, impossible)
+    advice = f"But {impossible}: leave it out." if impossible else _advice(done, gain)
+    sentence = "" if only_there else _sentence(done, effect, error, (before, after), gain, advice)
     if starts is not None:
         error = "held-out error of the breakaway effort"
-        sentence += " " + _sentence(what, error, starts[0].relative, starts[1].relative, held_out_gain(*starts))
+        there = held_out_gain(*starts)
+        sentence += " " + _sentence(done, effect, error, starts, there, _advice(done, there))
     elif only_there:
-        sentence = f"{what} changes nothing but the effort of breaking away, and too few starts from rest show that."
+        sentence = (
+            f"{done} {effect} changes nothing but the effort of breaking away, and too few starts from rest show that."
+        )
     result = result_of(fit, held_out(fit))
     model_id = store.add_model(material.study_id, parent.id, effects, stored(result))
     return Changed(
@@ -112,13 +130,12 @@ def _changed(before: HeldOut, after: HeldOut, parameters: list[FittedParameter])
     )
 
 
-def _sentence(what: str, error: str, before: float, after: float, gain: Gain, impossible: str = "") -> str:
-    if impossible:
-        advice = f"But {impossible}: leave it out."
-    elif gain.low > 0.0:
-        advice = "It helps: keep it."
-    elif gain.high < 0.0:
-        advice = "It harms: drop it."
-    else:
-        advice = "The interval includes no change: these trials do not show that it is needed."
-    return f"{what} changes the {error} from {before:.2%} to {after:.2%} ({gain.in_words(before, after)}). {advice}"
+def _advice(done: str, gain: Gain) -> str:
+    helps, harms, neither = _ADVICE[done]
+    return helps if gain.low > 0.0 else harms if gain.high < 0.0 else neither
+
+
+def _sentence(done: str, effect: str, error: str, errors: tuple[HeldOut, HeldOut], gain: Gain, advice: str) -> str:
+    before, after = (one.relative for one in errors)
+    told = gain.in_words(before, after)
+    return f"{done} {effect} changes the {error} from {before:.2%} to {after:.2%} ({told}). {advice}"

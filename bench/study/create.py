@@ -14,7 +14,7 @@ from bench.study.keep import keep_model
 from bench.study.material import Definition, Material, facts_of, load, material_of
 from bench.study.models.stages import CHANGE, FITTING, JUDGING
 from bench.study.models.study import ModelName, Study
-from bench.study.selection import keep, split
+from bench.study.selection import keep, split, without
 from compensator.lab import progress
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.recordings.bandwidth import choose_cutoff_hz
@@ -35,6 +35,7 @@ def create_study(
     where: Sequence[str] = (),
     cutoff_hz: float | None = None,
     rows: RowChoice = "sliding",
+    leave_out: Sequence[str] = (),
 ) -> Study:
     """Fix the trials of a study and fit its base model.
 
@@ -47,12 +48,13 @@ def create_study(
         where: criteria that every trial used must meet.
         cutoff_hz: of the final low-pass [Hz]; None lets the data choose, and leaves out trials too short for it.
         rows: "sliding", "moving" or "all".
+        leave_out: names of trials that are not used.
 
     Raises:
         StudyError: no usable trials, a criterion that fits none, different rigs, an unknown effect.
     """
     read: dict[int, Recording] = {}
-    definition = definition_of(store, experiment_ids, hold_out, base, where, cutoff_hz, rows, read)
+    definition = definition_of(store, experiment_ids, hold_out, base, where, cutoff_hz, rows, read, leave_out)
     return _create(store, name, definition, read)
 
 
@@ -65,10 +67,12 @@ def definition_of(
     cutoff_hz: float | None = None,
     rows: RowChoice = "sliding",
     read: dict[int, Recording] | None = None,
+    leave_out: Sequence[str] = (),
 ) -> Definition:
     """What a study is made of; arguments and errors as `create_study`; `read` gets the recordings of all trials."""
     if cutoff_hz is not None and not 0.0 < cutoff_hz < float("inf"):
         raise StudyError(f"cutoff_hz is {cutoff_hz:g} Hz; wanted is more than 0 Hz, or nothing to let the data choose")
+    where = (*where, *without(_trials(store, experiment_ids), leave_out))
     trials = _trials(store, experiment_ids, where)
     facts = _facts(store, experiment_ids)
     with lab_errors():

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 from bench.store.records import Trial
 from bench.study.errors import StudyError
@@ -72,8 +73,7 @@ def _known(trials: Sequence[Trial], key: str) -> str:
     """What could have been asked for: the values of a key that the trials have, else their keys."""
     values = sorted({f"{one.conditions[key]}" for one in trials if key in one.conditions})
     if values:
-        shown = ", ".join(values[:MOST_SHOWN]) + (" ..." if len(values) > MOST_SHOWN else "")
-        return f"these trials have {key} = {shown}"
+        return f"these trials have {key} = {_some(values)}"
     keys = sorted({"trial", "kind", "trial_id"}.union(*(trial.conditions for trial in trials)))
     return f"the keys of these trials are: {', '.join(keys)}"
 
@@ -89,3 +89,29 @@ def keep(trials: Sequence[Trial], where: Sequence[str]) -> list[Trial]:
     if not kept:
         raise StudyError(f"no trial of these experiments has {' and '.join(where) or 'samples'}")
     return kept
+
+
+def without(trials: Sequence[Trial], names: Sequence[str]) -> list[str]:
+    """The criterion that all trials meet but those of some names; none where no name is given.
+
+    By number, and not by name: a name may have a comma in it.
+
+    Raises:
+        StudyError: no trial has such a name, or none is left.
+    """
+    if not names:
+        return []
+    there = list(dict.fromkeys(trial.name for trial in trials))
+    for name in names:
+        if name not in there:
+            near = get_close_matches(name, there, n=3)
+            told = f"the nearest are: {', '.join(near)}" if near else f"there are: {_some(there)}"
+            raise StudyError(f"leave out: no trial of these experiments is called '{name}'; {told}")
+    left = [str(trial.id) for trial in trials if trial.name not in names]
+    if not left:
+        raise StudyError(f"leave out: that takes all {len(trials)} trials; leave some to fit the model to")
+    return [f"trial_id={','.join(left)}"]
+
+
+def _some(values: Sequence[str]) -> str:
+    return ", ".join(values[:MOST_SHOWN]) + (" ..." if len(values) > MOST_SHOWN else "")

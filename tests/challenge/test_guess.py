@@ -4,9 +4,11 @@ import pytest
 
 from bench.errors import ParameterError
 from bench.evaluation.challenge import guess as guessing
+from bench.evaluation.challenge.answer import Truth
 from bench.evaluation.challenge.guess import Guess, score
 from bench.evaluation.challenge.hidden_plant import MECHANISMS
 from bench.evaluation.challenge.names import ABSORBED, ACCEPTED, accepted
+from bench.evaluation.challenge.share import remarks_on
 
 
 def test_every_mechanism_has_its_names_and_the_lab_knows_them() -> None:
@@ -71,3 +73,29 @@ def test_what_no_motion_can_tell_does_not_count() -> None:
 def test_a_guess_that_cannot_be_read_is_refused(guess: str) -> None:
     with pytest.raises(ParameterError, match="guess"):
         Guess.parse(guess)
+
+
+def test_a_provisional_curve_stands_for_what_the_catalogue_does_not_have(monkeypatch) -> None:
+    """It names a variable and no mechanism: a hidden hose is found, and no false name is added."""
+    curve = "curve_of_since_reversal_against_motion"
+    rungs = [SimpleNamespace(effects=["inertia"]), SimpleNamespace(effects=["inertia", curve])]
+    last = SimpleNamespace(classes=[], slight=False, conclusion=SimpleNamespace(code="nothing"))
+    monkeypatch.setattr(guessing, "ladder", lambda *_: SimpleNamespace(rungs=rungs))
+    monkeypatch.setattr(guessing, "diagnose", lambda *_: last)
+    found = guessing.guess_of_study(None, 1)  # type: ignore[arg-type]
+    assert found.text == "none-of-these"
+    assert score(["hose"], found).perfect
+    assert Guess.parse(f"spring,{curve}") == Guess.parse("spring,none-of-these")
+
+
+@pytest.mark.parametrize("text", ["nothing", "none-of-these", "spring/centre_of_mass_angle,cogging,none-of-these"])
+def test_a_guess_is_told_as_it_is_read(text: str) -> None:
+    assert Guess.parse(text).text == text
+
+
+def test_what_recordings_hold_next_to_nothing_of_is_said() -> None:
+    truths = [Truth("spring", "a spring", 1.0, "stiffness", "1", share, {}) for share in (0.0, 4e-4, 6e-4)]
+    assert remarks_on(truths[2:]) == []
+    said = remarks_on(truths)
+    assert len(said) == 2
+    assert "a spring: these recordings hold next to nothing of it, less than 0.05% of the effort" in said[0]

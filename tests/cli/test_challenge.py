@@ -1,11 +1,17 @@
 """`friction-bench challenge` and `reveal`."""
 
 import json
+import subprocess
+import sys
 
 import pytest
 
 from bench.evaluation.challenge import difficulty
-from bench.evaluation.challenge.difficulty import Difficulty
+from bench.evaluation.challenge.answer import Answer, Truth
+from bench.evaluation.challenge.difficulty import DIFFICULTIES, Difficulty
+from bench.evaluation.challenge.seal import write_sealed
+
+AS_THEY_ARE = dict(DIFFICULTIES)
 
 
 @pytest.fixture(autouse=True)
@@ -20,11 +26,27 @@ def test_from_the_draw_to_the_score(command):
     assert made.exit_code == 0, made.output
     assert command("import", "set").exit_code == 0
     assert command("study", "new", "x", "--experiment", 1).exit_code == 0
+    told = command("reveal", "set.answer", "--study", 1)
     scored = json.loads(command("reveal", "set.answer", "--study", 1, "--recordings", "set", "--json").stdout)
     truths = [truth["name"] for truth in scored["answer"]["truths"]]
     assert sorted(scored["score"]["right"] + scored["score"]["missed"] + scored["score"]["untold"]) == sorted(truths)
+    assert f"guess: {scored['guessed']}\n" in told.stdout
     shown = command("reveal", "set.answer", "--guess", "nothing")
+    assert "guess: nothing\n" in shown.stdout
     assert "missed" in shown.stdout or "not to be told" in shown.stdout
+
+
+def test_a_mechanism_of_which_the_recordings_hold_next_to_nothing_is_remarked(command, tmp_path):
+    (tmp_path / "set").mkdir()
+    truth = Truth("spring", "a spring", 1.0, "stiffness", "N m/rad", 0.0, {})
+    write_sealed(Answer(1, "hard", 0, (truth,), {}), tmp_path / "set", tmp_path / "set.answer")
+    shown = " ".join(command("reveal", "set.answer", "--guess", "nothing").stdout.split())
+    remark = "a spring: these recordings hold next to nothing of it, less than 0.05% of the effort"
+    assert remark in shown
+    assert "missed: spring" in shown
+    scored = json.loads(command("reveal", "set.answer", "--guess", "nothing", "--json").stdout)
+    assert scored["remarks"][0].startswith(remark)
+    assert scored["score"]["missed"] == ["spring"]
 
 
 def test_without_a_seed_nobody_knows_what_comes(command):
@@ -51,3 +73,20 @@ def test_ranges_are_shown_with_their_reasons(command):
     shown = command("challenge", "--ranges").stdout
     assert "the paper: 60 of 490 mA" in shown
     assert "lubricant: Vogel temperature" in shown
+
+
+def test_the_difficulties_say_how_many_mechanisms_they_hide(command):
+    told = " ".join(command("challenge", "--help").stdout.replace("│", " ").split())
+    for name, one in AS_THEY_ARE.items():
+        words = [word for word, chance in zip(("nothing", "one", "two"), one.counts, strict=True) if chance]
+        assert f"{name}: {', '.join(words[:-1])} or {words[-1]}" in told
+
+
+def test_a_place_that_is_taken_is_refused_before_anything_is_loaded(tmp_path):
+    """What draws and records takes seconds to load."""
+    (tmp_path / "set").mkdir()
+    asked = "import sys; from bench.cli.app import app; app(['challenge', '--output', 'set'], standalone_mode=False)"
+    watched = f"import sys\ntry:\n    {asked}\nfinally:\n    print('bench.evaluation.challenge.make' in sys.modules)"
+    told = subprocess.run([sys.executable, "-c", watched], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert "is there already" in told.stderr
+    assert told.stdout.strip() == "False"

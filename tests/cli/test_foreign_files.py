@@ -136,3 +136,18 @@ def test_a_joint_that_never_slid_is_reported_and_not_refused(command, tmp_path):
     assert "breakaway lies beyond that" in result.stdout
     assert "Effort over position" in (tmp_path / "explain-push.html").read_text()
     assert json.loads(command("study", "list", "--json").stdout) == []
+
+
+def test_what_an_export_wrote_is_explained_as_it_is(command, tmp_path):
+    """Few rows of a trial have an event, which is no number; nothing of a recording set is guessed."""
+    motions = ["--waveforms", "slow-sine,multisine", "--loads-kg", "0.05", "--duration-s", 4]
+    assert command("run", "excitation", *motions, "--json").exit_code == 0
+    assert command("export", 1, "set").exit_code == 0
+    file = next(path for path in (tmp_path / "set").glob("slow-sine*.csv"))
+    assert ",event\n" in file.read_text()
+    assert "taken for" in command("import", "--guess", file).stdout
+    for number, words in enumerate((["set"], [file, "--rig", "set/rig.toml"]), start=1):
+        result = command("--store", "other.sqlite", "explain", *words, "--html", f"{number}.html")
+        assert result.exit_code == 0, result.output
+        assert "taken for" not in result.stdout
+        assert (tmp_path / f"{number}.html").exists()

@@ -104,3 +104,28 @@ def test_the_command_asks_all_studies_in_processes_and_prints_one_line_for_each(
     refused = command("study", "diagnose-many", "--cluster", "nowhere")
     assert refused.exit_code != 0
     assert "wanted is a scheduler's address" in refused.stderr
+
+
+def test_a_trial_is_left_out_by_its_name(command, tmp_path):
+    (tmp_path / "known joint.zip").write_bytes(recording_set_zip())
+    assert command("import", "known joint.zip").exit_code == 0
+    made = command("study", "new", "arm", "--experiment", 1, "--leave-out", "swing-0.6-2", "--json")
+    assert made.exit_code == 0, made.output
+    names = [one["name"] for one in json.loads(made.stdout)["trials"]]
+    assert names == ["swing-0.6-1", "swing-0.9-1", "swing-0.9-2", "swing-1.2-1", "swing-1.2-2"]
+    refused = command("study", "new", "arm", "--experiment", 1, "--leave-out", "swing-0.6")
+    assert refused.exit_code == 3
+    assert "the nearest are: swing-0.6-" in refused.stderr
+
+
+def test_each_step_of_a_study_names_the_next(command, tmp_path):
+    (tmp_path / "known joint.zip").write_bytes(recording_set_zip())
+    assert command("import", "known joint.zip").exit_code == 0
+    made = command("study", "new", "arm", "--experiment", 1)
+    assert made.stdout.splitlines()[-1] == "next: friction-bench study diagnose 1"
+    elsewhere = command("--store", "friction-bench.sqlite", "study", "diagnose", 1).stdout.splitlines()
+    assert elsewhere[-1] == "next: friction-bench --store friction-bench.sqlite study add 1 viscous_asymmetry"
+    assert command("study", "add", 1, "viscous_asymmetry").exit_code == 0
+    again = command("study", "diagnose", 1, "--model", 1).stdout.splitlines()
+    assert again[-1] == "next: friction-bench study add 1 viscous_asymmetry --model 1"
+    assert command("study", "diagnose", 1).stdout.splitlines()[-1] == "next: docs/how-to/no-name.md says what to do"

@@ -8,10 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench.config.rig import Rig
-from bench.recording_set import RecordingSetError, read_mapping, read_recording_set
+from bench.config.rig import Arm, Rig
+from bench.recording_set import (
+    RecordingSet,
+    RecordingSetError,
+    read_mapping,
+    read_recording_set,
+    write_recording_set,
+)
 from bench.recording_set.formats import column_table
 from bench.recording_set.guess import Known, guess_of, mapping_text, read_unknown
+from compensator.lab.recordings.recording import Event, Recording
 from tests.recording_set.foreign_files import FILES
 
 
@@ -133,3 +140,25 @@ def test_a_nan_that_signals_is_a_value_that_is_not_known(tmp_path: Path, kind: s
     np.savez(tmp_path / "signals.npz", time_s=time_s, position_rad=position, current_a=0.1 * np.cos(time_s))
     (recording,) = read_unknown([tmp_path / "signals.npz"], None, Known({}))[0].recordings
     assert np.flatnonzero(np.isnan(recording.channels["position_rad"])).tolist() == [7]
+
+
+def test_what_was_written_as_a_recording_set_is_read_as_that_and_not_guessed(tmp_path):
+    """A set, zipped or not, and one file of it; the few cells of events are no numbers."""
+    time_s = np.arange(0.0, 2.0, 0.005)
+    channels = {"time_s": time_s, "position_rad": np.sin(time_s), "current_estimate_a": np.cos(time_s)}
+    made = Recording("swing", "sines", {"load_kg": 0.1}, channels, [Event(1.995, "end", "completed")])
+    rig = Rig(name="mine", arm=Arm(length_m=0.3))
+    for place in (tmp_path / "set", tmp_path / "set.zip"):
+        write_recording_set(RecordingSet("set", rig, [made]), place)
+        found, guess = read_unknown([place], None, Known({}))
+        assert guess is None
+        assert found.rig == rig
+        assert found.recordings[0].conditions == {"load_kg": 0.1}
+        assert list(found.recordings[0].channels) == list(channels)
+        assert found.recordings[0].events == made.events
+    alone, guess = read_unknown([tmp_path / "set" / "swing.csv"], rig, Known({}))
+    assert guess is None
+    assert alone.rig == rig
+    assert list(alone.recordings[0].channels) == list(channels)
+    columns = guess_of([tmp_path / "set"], None, Known({}))[0].taken
+    assert next(one.why for one in columns if one.column == "event") == "events: they are kept"

@@ -4,9 +4,11 @@ import json
 
 import pytest
 
-from bench.evaluation.challenge import difficulty
+from bench.evaluation.challenge import difficulty, kept
+from bench.evaluation.challenge.answer import Answer, Truth
 from bench.evaluation.challenge.difficulty import Difficulty
 from bench.evaluation.challenge.kept import answer_of
+from bench.service.routes.challenges import Reveal, _reveal
 
 QUICK = Difficulty((0.0, 1.0, 0.0), (0.8, 1.0), 0.001, (1.0,), 2.0, 1, 1)
 SEED = 3
@@ -65,3 +67,11 @@ def test_what_cannot_be_revealed_says_why(service, challenge):
     answer = service.client.post(f"/challenges/{other}/reveal", json={"guess": "nothing"})
     assert answer.status_code == 404
     assert "is no challenge" in answer.json()["detail"]
+
+
+def test_what_the_recordings_hold_next_to_nothing_of_is_said_beside_the_score(monkeypatch):
+    truth = Truth("spring", "a spring", 1.0, "stiffness", "N m/rad", 1e-4, {})
+    monkeypatch.setattr(kept, "answer_of", lambda *_: Answer(1, "hard", 0, (truth,), {}))
+    told = _reveal(None, 1, Reveal(guess="nothing"))
+    assert len(told.missed) == 1  # the score is what it was
+    assert "a spring: these recordings hold next to nothing of it" in told.sentence

@@ -49,7 +49,7 @@ def test_the_hidden_effect_is_named_added_and_helps(story):
     assert [one.effect for one in found.ranking if one.in_class] == found.classes[0].effects
     assert story["add"].gain_low > 0
     assert "It helps: keep it." in story["add"].sentence
-    assert "It harms: drop it." in story["drop"].sentence
+    assert story["drop"].sentence.endswith("Dropping it harms: add it again.")
     whole = story["compare after"].parameters
     assert story["add"].parameters == [one for one in whole if one.effect == "viscous_asymmetry"] != []
     assert story["drop"].parameters == []
@@ -279,5 +279,17 @@ def test_an_effect_with_memory_is_judged_where_it_lives_and_the_ladder_where_the
 
 @pytest.mark.parametrize(("after", "told"), [(0.23, True), (0.0315, False)])
 def test_a_gain_unlike_the_errors_beside_it_says_why(after, told):
-    sentence = _sentence("Adding spring", "held-out error", 0.21, after, Gain(0.85, 0.8, 0.9))
+    sentence = _sentence("Adding", "spring", "held-out error", 0.21, after, Gain(0.85, 0.8, 0.9))
     assert ("trials that the others tell nothing of count little in it" in sentence) == told
+
+
+@pytest.mark.parametrize(
+    ("gain", "told"),
+    [
+        (Gain(-0.676, -0.8, -0.5), "Dropping it harms: add it again."),
+        (Gain(0.0, -0.1, 0.1), "dropping it does no harm that these trials show."),
+        (Gain(0.2, 0.1, 0.3), "Dropping it helps: the model is better without it."),
+    ],
+)
+def test_what_is_said_after_an_effect_was_dropped_is_about_dropping_it(gain, told):
+    assert _sentence("Dropping", "elasticity", "held-out error", 0.0468, 0.0785, gain).endswith(told)

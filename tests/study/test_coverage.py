@@ -142,3 +142,16 @@ def test_explain_goes_on_beside_a_curve_where_no_formula_follows(store: Store) -
     assert "curve_of_position_against_motion" in added
     assert "viscous_asymmetry" in found.rungs.rungs[-1].effects
     assert found.rungs.rungs[-1].held_out < 0.5 * found.rungs.rungs[0].held_out
+
+
+@pytest.mark.parametrize("warmest_c", [25.2, 27.7])
+def test_what_the_temperature_leaves_open_is_what_is_said_of_its_effects(store: Store, warmest_c: float) -> None:
+    """A table that says that effects of temperature cannot be seen stood above one that could be judged."""
+    found = told(store, imported(store, plans(repeats=1, temperatures_c=(25.0, warmest_c, 25.1))))
+    names = {"viscous_temperature", "coulomb_temperature", "winding_temperature"}
+    effects = [one for one in found.effects if one.effect in names]
+    shown = [one.smallest for one in effects if one.standing in ("judgeable", "confounded")]
+    assert bool(shown) == (warmest_c > 26.0)
+    least = f"less than 5 K: effects of temperature show from {min(shown, default=0.0):.2%} of the effort on"
+    assert lacking(found, "temperature") == (least if shown else "effects of temperature cannot be seen")
+    assert WARMTH in [one.trial for one in found.advice] or shown

@@ -188,3 +188,16 @@ def test_trials_of_our_control_loop_have_its_sampling_delay_wherever_they_are_im
         number = import_recording_set(store, RecordingSet("set", RIG, these), "a")
         assert create_study(store, "a", [number]).models[0].effects[-1] == last
         assert store.trials(number)[0].conditions.keys() == made[0].conditions.keys()
+
+
+def test_trials_are_left_out_by_their_names(store, experiment_id):
+    study = create_study(store, "a", [experiment_id], leave_out=["load-0g-1-1", "load-200g-2-2"])
+    names = [trial.name for trial in study.trials]
+    assert len(names) == 10
+    assert not {"load-0g-1-1", "load-200g-2-2"} & set(names)
+    with pytest.raises(StudyError, match=r"no trial .* is called 'load-0g-1'; the nearest are: .*load-0g-1-1"):
+        create_study(store, "a", [experiment_id], leave_out=["load-0g-1"])
+    with pytest.raises(StudyError, match=r"'tomorrow'; there are: load-0g-0-1, load-0g-0-2"):
+        create_study(store, "a", [experiment_id], leave_out=["tomorrow"])
+    with pytest.raises(StudyError, match="takes all 12 trials"):
+        create_study(store, "a", [experiment_id], leave_out=[*names, "load-0g-1-1", "load-200g-2-2"])

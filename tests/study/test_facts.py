@@ -6,6 +6,9 @@ import pytest
 
 from bench.config.rig import Rig
 from bench.study.material import facts_of
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
@@ -36,5 +39,7 @@ def test_only_a_voltage_holds_it(channel, held):
         channels[channel] = 0.1 * channels.pop("torque_n_m")
         channels["supply_v"] = 24.0 + 0.0 * channels["time_s"]
         made.append(replace(one, channels=channels))
-    dataset = make_dataset(made, Facts(arm_m=0.3, back_emf_v_s_rad=4.0), Processing(8.0))
-    assert {trial.motion.back_emf for trial in dataset.trials} == {held}
+    facts = Facts(arm_m=0.3, back_emf_v_s_rad=4.0)
+    fit = fit_model(make_dataset(made, facts, Processing(8.0)), default_effects(facts))
+    predicted = with_own_prediction(fit.dataset, fit.terms)
+    assert {trial.motion.back_emf for trial in predicted.trials} == {held}

@@ -57,3 +57,4 @@ def test_the_command_says_what_to_add(tmp_path):
         study_id = create_study(own, "catches", [made]).study_id
     told = CliRunner().invoke(app, ["--store", url, "study", "diagnose", str(study_id)], env={"COLUMNS": "300"})
     assert f"{CURVE} can stand in the model as a provisional term" in told.stdout
+    assert told.stdout.splitlines()[-1].endswith(f"study add {study_id} {CURVE}")

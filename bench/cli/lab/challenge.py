@@ -15,6 +15,12 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.evaluation.challenge.guess import Guess, Score
 
 
+_DIFFICULTY = (
+    "What is hidden. easy: nothing or one mechanism, a large one. medium: nothing, one or two. hard: nothing, one or "
+    "two, small ones in short and noisy recordings. How often: --ranges."
+)
+
+
 class Level(Enum):
     """How hard."""
 
@@ -28,7 +34,7 @@ def challenge(
         int | None,
         typer.Option(min=0, help="The same seed makes the same challenge; without it one that nobody knows."),
     ] = None,
-    difficulty: Annotated[Level, typer.Option(help="How much is hidden, how large, how good the data.")] = Level.EASY,
+    difficulty: Annotated[Level, typer.Option(help=_DIFFICULTY)] = Level.EASY,
     output: Annotated[Path, typer.Option(help="A folder to make, or a file that ends in .zip.")] = Path("challenge"),
     ranges: Annotated[bool, typer.Option("--ranges", help="Print what is drawn from which range, and why.")] = False,
 ) -> None:
@@ -39,6 +45,10 @@ def challenge(
     if ranges:
         _print_ranges()
         return
+    from bench.evaluation.challenge.seal import check_free
+
+    check_free(output)  # what draws and records takes seconds to load
+
     from bench.evaluation.challenge.make import write_challenge
 
     sealed = write_challenge(secrets.randbits(64) if seed is None else seed, difficulty.value, output)
@@ -91,14 +101,18 @@ def _guess_of(context: typer.Context, study: int) -> "Guess":
 def _as_json(answer: "Answer", guess: "Guess | None", score: "Score | None") -> dict[str, object]:
     from dataclasses import asdict
 
-    found: dict[str, object] = {"answer": answer.to_json()}
+    from bench.evaluation.challenge.share import remarks_on
+
+    found: dict[str, object] = {"answer": answer.to_json(), "remarks": remarks_on(answer.truths)}
     if guess is not None and score is not None:
-        found |= {"guess": asdict(guess), "score": {**asdict(score), "perfect": score.perfect, "points": score.points}}
+        scored = {**asdict(score), "perfect": score.perfect, "points": score.points}
+        found |= {"guess": asdict(guess), "guessed": guess.text, "score": scored}
     return found
 
 
 def _print(answer: "Answer", guess: "Guess | None", score: "Score | None") -> None:
     from bench.evaluation.challenge.names import accepted
+    from bench.evaluation.challenge.share import remarks_on
 
     if answer.truths:
         rows = [
@@ -113,7 +127,10 @@ def _print(answer: "Answer", guess: "Guess | None", score: "Score | None") -> No
         table("Hidden", ["mechanism", "in the catalogue", "size", "share of the effort#"], rows)
     else:
         say("Hidden: nothing.")
+    for sentence in remarks_on(answer.truths):
+        say(sentence)
     if score is not None and guess is not None:
+        say(f"guess: {guess.text}")
         _print_score(score)
 
 
@@ -136,7 +153,15 @@ def _print_score(score: "Score") -> None:
 
 
 def _print_ranges() -> None:
+    from bench.evaluation.challenge.difficulty import DIFFICULTIES
     from bench.evaluation.challenge.hidden_plant import range_tables
 
+    rows = [
+        (name, *map(percent, one.counts), " to ".join(map(percent, one.sizes)), percent(one.noise), one.duration_s)
+        for name, one in DIFFICULTIES.items()
+    ]
+    chances = [f"hides {count}#" for count in ("nothing", "one", "two")]
+    columns = ["difficulty", *chances, "sizes, of their range", "noise, of the peak current#", "a motion [s]#"]
+    table("Difficulty", columns, rows)
     for one in range_tables():
         table(one.title, ["quantity", "from#", "to#", "unit", "why"], one.rows)

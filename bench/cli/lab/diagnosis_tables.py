@@ -49,6 +49,21 @@ def diagnosis(found: "Diagnosis") -> None:
         say(note)
 
 
+def next_step(found: "Diagnosis", model_id: int | None) -> str:
+    """What to do after a diagnosis, on one line.
+
+    Args:
+        found: the diagnosis.
+        model_id: the model that was asked for; None: the newest.
+    """
+    named = [] if found.slight else [name for members in found.classes for name in members.effects]
+    offered = named or ([found.provisional.effect] if found.provisional else [])
+    if not offered:
+        return "next: docs/how-to/no-name.md says what to do"
+    beside = "" if model_id is None else f" --model {model_id}"
+    return f"next: friction-bench study add {found.study_id} {offered[0]}{beside}"
+
+
 def search(found: "Searched") -> None:
     """The steps of a search, and what is left."""
     for step in found.steps:

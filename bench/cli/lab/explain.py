@@ -53,6 +53,9 @@ def explain(
         raise FileError(f"{report}: is there already; name another file with --html, or remove it")
     if guess is not None and not as_json:
         show(guess, recordings.notes)
+    elif not as_json:
+        for note in recordings.notes:
+            say(note)
     with session_of(context).open_store() as store, _progress(hidden=as_json) as bar:
         task = bar.add_task("import", total=len(STEPS) + 1)
         experiment_id = import_recording_set(store, recordings, called)

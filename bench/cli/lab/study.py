@@ -15,6 +15,8 @@ from bench.cli.output import Json, print_json, say, table, write_whole
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.store import Store
+    from bench.study.models.diagnosis import Diagnosis
+    from bench.study.models.study import Study
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -28,6 +30,7 @@ _HOLD_OUT = (
     "Without it, each trial is left out in turn."
 )
 _WHERE = "Use only trials of which this holds; repeatable."
+_LEAVE_OUT = "Name of a trial that is not used, such as one that was disturbed; repeatable."
 _START = (
     "Run them: the joint moves. After each round add what completed to the study, diagnose, and suggest anew; what "
     "trips or is refused is replaced by the next best."
@@ -61,6 +64,7 @@ def new_command(
     experiment: Annotated[list[int], typer.Option(help="Experiment whose trials are used; repeatable.")],
     hold_out: Annotated[list[str] | None, typer.Option(metavar="KEY=VALUE", help=_HOLD_OUT)] = None,
     where: Annotated[list[str] | None, typer.Option(metavar="KEY=VALUE", help=_WHERE)] = None,
+    leave_out: Annotated[list[str] | None, typer.Option(metavar="TRIAL", help=_LEAVE_OUT)] = None,
     base: Annotated[list[str] | None, typer.Option(help=_BASE)] = None,
     rows: Annotated[Rows, typer.Option(help="Which rows count in fit and error.")] = Rows.SLIDING,
     cutoff_hz: Annotated[float | None, typer.Option(help="Low-pass [Hz]; without it, chosen from the data.")] = None,
@@ -69,10 +73,16 @@ def new_command(
     """Create a study: which trials are fitted, and which judge the fit."""
     from bench.study.create import create_study
 
+    session = session_of(context)
+
+    def show(found: "Study") -> None:
+        study_tables.study(found)
+        say(session.in_full(f"next: friction-bench study diagnose {found.study_id}"))
+
     _show(
         context,
         as_json,
-        study_tables.study,
+        show,
         create_study,
         name,
         experiment,
@@ -81,6 +91,7 @@ def new_command(
         where=where or [],
         cutoff_hz=cutoff_hz,
         rows=rows.value,
+        leave_out=leave_out or [],
     )
 
 
@@ -130,7 +141,13 @@ def diagnose_command(context: typer.Context, study: StudyId, model: Model = None
     """Which physical effect is missing, how sure is that, and what would adding it bring."""
     from bench.study.diagnosis.diagnose import diagnose
 
-    _show(context, as_json, diagnosis_tables.diagnosis, diagnose, study, model)
+    session = session_of(context)
+
+    def show(found: "Diagnosis") -> None:
+        diagnosis_tables.diagnosis(found)
+        say(session.in_full(diagnosis_tables.next_step(found, model)))
+
+    _show(context, as_json, show, diagnose, study, model)
 
 
 @app.command("diagnose-many")

@@ -58,7 +58,8 @@ def coverage(found: "Coverage") -> None:
         (one.effect, one.standing, one.reason or "-", ", ".join(one.rivals) or "-", percent(one.smallest))
         for one in found.effects
     ]
-    table("Effects beside the model", ["effect", "these trials", "why", "looks like", "shows from#"], effects)
+    columns = ["effect", "these trials", "why", "looks like", "shows from, of the effort#"]
+    table("Effects beside the model", columns, effects)
     trials = [(one.trial, len(one.effects) or "all", ", ".join(one.effects)) for one in found.advice]
     table("What would help", ["trial", "opens#", "effects"], trials)
     say(found.sentence)

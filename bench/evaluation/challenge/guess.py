@@ -22,7 +22,7 @@ class Guess:
 
     Attributes:
         classes: effects that are said to be there. A class of several names says: one of these.
-        unknown: something is said to be there that no effect of the catalogue stands for.
+        unknown: something is said to be there that no effect of the catalogue stands for. A provisional curve says so.
     """
 
     classes: tuple[tuple[str, ...], ...] = ()
@@ -41,8 +41,24 @@ class Guess:
                 f"guess is '{text}'; wanted effects such as spring,viscous_asymmetry, a class of effects such as "
                 f"spring/gravity, {NOTHING} or {UNKNOWN}"
             )
-        named = [tuple(part.split("/")) for part in parts if part not in (NOTHING, UNKNOWN)]
-        return cls(tuple(_known(names) for names in named), UNKNOWN in parts)
+        named = [_known(tuple(part.split("/"))) for part in parts if part not in (NOTHING, UNKNOWN)]
+        return cls.of(named, UNKNOWN in parts)
+
+    @classmethod
+    def of(cls, classes: Iterable[tuple[str, ...]], unknown: bool) -> "Guess":
+        """A guess of names as a model has them: a curve names a variable and no mechanism, so it counts as unknown."""
+        parts = [tuple(name for name in one if not effect_named(name).provisional) for one in classes]
+        return cls(tuple(filter(None, parts)), unknown or not all(parts))
+
+    @property
+    def words(self) -> list[str]:
+        """Each an effect, a class joined by '/', or none-of-these; empty where nothing is said to be there."""
+        return ["/".join(names) for names in self.classes] + [UNKNOWN] * self.unknown
+
+    @property
+    def text(self) -> str:
+        """As `parse` reads it."""
+        return ",".join(self.words) or NOTHING
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +123,8 @@ def score(truths: Iterable[str], guess: Guess, absorbed: Iterable[str] = ()) -> 
 def guess_of_study(store: Store, study_id: int) -> Guess:
     """What a study says is hidden: what it added, and what its last diagnosis names, unless it calls that slight.
 
+    A provisional curve among what it added says: something that no effect of the catalogue stands for.
+
     Raises:
         NotFoundError: there is no such study.
         StudyError: its last model cannot be judged.
@@ -115,7 +133,7 @@ def guess_of_study(store: Store, study_id: int) -> Guess:
     last = diagnose(store, study_id)
     added = [(name,) for name in rungs[-1].effects if name not in rungs[0].effects]
     named = [] if last.slight else [tuple(one.effects) for one in last.classes]
-    return Guess((*added, *named), last.conclusion.code in OUTSIDE)
+    return Guess.of([*added, *named], last.conclusion.code in OUTSIDE)
 
 
 def _known(names: tuple[str, ...]) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from bench.evaluation.challenge.answer import Answer, Truth
 from bench.evaluation.challenge.difficulty import Difficulty, find_difficulty
 from bench.evaluation.challenge.hidden_plant import DrawnPlant, Wanted, draw_plant
 from bench.evaluation.challenge.owner import bench_of, rig_of
-from bench.evaluation.challenge.seal import SealError, write_sealed
+from bench.evaluation.challenge.seal import answer_path, check_free, write_sealed
 from bench.evaluation.challenge.session import protocol_of, record
 from bench.evaluation.challenge.share import effort_share
 from bench.recording_set import RecordingSet, write_recording_set
@@ -26,11 +26,6 @@ class Challenge:
 
     recording_set: RecordingSet
     answer: Answer
-
-
-def answer_path(output: Path) -> Path:
-    """Where the answer to a recording set is written."""
-    return output.with_name(output.name.removesuffix(".zip") + ".answer")
 
 
 def write_challenge(seed: int, difficulty: str, output: Path) -> Path:
@@ -49,10 +44,8 @@ def write_challenge(seed: int, difficulty: str, output: Path) -> Path:
         RecordingSetError, SealError: a place is taken or cannot be written.
         ExperimentError: no joint of this seed completes the protocol.
     """
+    check_free(output)
     sealed = answer_path(output)
-    for taken in (sealed, output):
-        if taken.exists():
-            raise SealError(f"{taken}: is there already; name another place with --output, or remove it")
     made = make_challenge(seed, difficulty)
     write_recording_set(made.recording_set, output)
     write_sealed(made.answer, output, sealed)

@@ -38,6 +38,22 @@ class SealError(BenchError, ValueError):
     """
 
 
+def answer_path(output: Path) -> Path:
+    """Where the answer to a recording set is written."""
+    return output.with_name(output.name.removesuffix(".zip") + ".answer")
+
+
+def check_free(output: Path) -> None:
+    """Refuse places that are taken, before anything is computed.
+
+    Raises:
+        SealError: the recordings or their answer are there already.
+    """
+    for taken in (answer_path(output), output):
+        if taken.exists():
+            raise SealError(f"{taken}: is there already; name another place with --output, or remove it")
+
+
 def write_sealed(answer: Answer, recordings: Path, path: Path) -> None:
     """Write an answer file that belongs to a recording set.
 

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
+from bench.evaluation.challenge.answer import Truth
+from compensator.lab.model.held_out_error import LEAST_OF_EFFORT
 from compensator.lab.recordings.recording import FloatArray, Recording
 
 SMOOTHED_S = 0.1  # slower than most of what stick and slip do, never at the same moment twice
@@ -24,6 +26,16 @@ def effort_share(with_it: Sequence[Recording], without: Sequence[Recording], aga
     change = _power_of_difference(with_it, without) - _power_of_difference(without, again)
     whole = np.concatenate([_motion(one) for one in with_it if one.kind == KIND])
     return float(np.sqrt(max(change, 0.0) / np.mean(whole**2)))
+
+
+def remarks_on(truths: Sequence[Truth]) -> list[str]:
+    """One sentence for each mechanism of which its recordings hold next to nothing: to miss it is no fault."""
+    return [
+        f"{truth.title}: these recordings hold next to nothing of it, less than {LEAST_OF_EFFORT:.2%} of the effort; "
+        "no model of them could show it."
+        for truth in truths
+        if truth.share < LEAST_OF_EFFORT
+    ]
 
 
 def _power_of_difference(one: Sequence[Recording], other: Sequence[Recording]) -> float:

@@ -13,7 +13,7 @@ from bench.recording_set.guess.evidence import is_clock
 from bench.recording_set.guess.names import UNITS_OF, Reading, read_name, same_kind
 from bench.recording_set.guess.said import IGNORE, Said
 from bench.recording_set.text.dialect import is_stamp
-from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.recording import EVENT_COLUMN, FloatArray
 
 
 @dataclass(frozen=True)
@@ -81,6 +81,8 @@ def _quantity(name: str, values: object, reading: Reading, said: MappingOf[str, 
     """The quantity of a column, or "" and why it is not used."""
     if name in said:
         return ("", "as said") if said[name].quantity == IGNORE else (said[name].quantity, "")
+    if name == EVENT_COLUMN:
+        return "", "events: they are kept"
     if isinstance(values, list):
         texts = [text for text in values[:50] if text.strip()]
         stamps = bool(texts) and all(is_stamp(text) for text in texts)

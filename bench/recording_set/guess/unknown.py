@@ -7,12 +7,22 @@ from pathlib import Path
 from bench.config.rig import Rig
 from bench.recording_set.container import open_container
 from bench.recording_set.errors import RecordingSetError
-from bench.recording_set.guess.guess import Guess, Known, guess_mapping
+from bench.recording_set.guess.guess import NOTHING, Guess, Known, guess_mapping
 from bench.recording_set.guess.sheets import read_sheets
 from bench.recording_set.mapping import Mapping
-from bench.recording_set.read import MAPPING_FILE, RIG_FILE, name_of_set, own_mapping, read_recording_set, read_rig_of
+from bench.recording_set.read import (
+    MAPPING_FILE,
+    RIG_FILE,
+    entries_of,
+    name_of_set,
+    own_mapping,
+    read_recording_set,
+    read_rig_of,
+    table_of,
+)
 from bench.recording_set.recording_set import RecordingSet
 from bench.recording_set.trials_csv import TRIALS_FILE
+from compensator.lab.recordings.recording import CHANNELS, EVENT_COLUMN
 
 
 def guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Guess, Rig, tuple[str, ...]]:
@@ -43,6 +53,8 @@ def read_unknown(
 ) -> tuple[RecordingSet, Guess | None]:
     """Files of any bench; without a mapping, given or brought along by the set, it is guessed. So is a missing rig.
 
+    A recording set, or a file of one, tells what its columns are: it is read as an import reads it, and not guessed.
+
     Args:
         paths: a folder, a zip, or files.
         rig: of the joint, where it is known.
@@ -59,9 +71,28 @@ def read_unknown(
         linear = any(f"{name}_m" in mapping.columns for name in ("position", "target"))
         assumed = Rig(name=name_of_set(paths), joint="linear" if linear else "rotary")
         return read_recording_set(paths, mapping, rig or _own_rig(paths) or assumed), None
+    if known == NOTHING and (own := _as_recording_set(paths, rig)) is not None:
+        return own, None
     guess, rig, _ = guess_of(paths, rig, known)
     check_answered(guess)
     return read_recording_set(paths, guess.mapping, rig), guess
+
+
+def _as_recording_set(paths: Sequence[Path], rig: Rig | None) -> RecordingSet | None:
+    """What `write_recording_set` wrote, or files of it; None where it is something else, or is not what it says."""
+    try:
+        with open_container(*paths) as container:
+            entries = entries_of(container, Mapping())
+            if not all(entry.file.endswith(".csv") for entry in entries):  # other formats would be read whole here
+                return None
+            headers = [table_of(container, entry, Mapping()).header for entry in entries]
+            lists_trials = container.has(TRIALS_FILE) and container.has(RIG_FILE)
+        names = {name for header in headers for name in header}
+        if not names <= {*CHANNELS, EVENT_COLUMN} or not (lists_trials or EVENT_COLUMN in names):
+            return None
+        return read_recording_set(paths, None, rig or _own_rig(paths) or Rig(name=name_of_set(paths)))
+    except RecordingSetError:
+        return None
 
 
 def check_answered(guess: Guess) -> None:

@@ -137,9 +137,10 @@ async def reveal(request: Request, challenge_id: ChallengeId, body: Reveal) -> R
 
 
 def _reveal(store: Store, challenge_id: int, body: Reveal) -> Revealed:
-    from bench.evaluation.challenge.guess import UNKNOWN, Guess, guess_of_study, score
+    from bench.evaluation.challenge.guess import Guess, guess_of_study, score
     from bench.evaluation.challenge.kept import answer_of
     from bench.evaluation.challenge.names import ABSORBED, accepted, title_of
+    from bench.evaluation.challenge.share import remarks_on
 
     answer = answer_of(store, challenge_id)
     guess = Guess.parse(body.guess) if body.guess is not None else guess_of_study(store, body.study_id or 0)
@@ -155,18 +156,17 @@ def _reveal(store: Store, challenge_id: int, body: Reveal) -> Revealed:
         )
         for truth in answer.truths
     ]
-    guessed = ["/".join(names) for names in guess.classes] + [UNKNOWN] * guess.unknown
     return Revealed(
         challenge_id=challenge_id,
         hidden=hidden,
-        guessed=guessed,
+        guessed=guess.words,
         right=[title_of(one) for one in found.right],
         missed=[title_of(one) for one in found.missed],
         untold=[title_of(one) for one in found.untold],
         recorded=list(found.recorded),
         wrong=list(found.wrong),
         perfect=found.perfect,
-        sentence=_sentence(len(hidden), found),
+        sentence=" ".join([_sentence(len(hidden), found), *remarks_on(answer.truths)]),
     )
 
 

@@ -9,6 +9,7 @@ from bench.study.material import load_model
 from bench.study.models.coverage import Advice, Coverage, Held, JudgedEffect
 from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
 from compensator.lab.comparison.judgeable import Judgeable, judgeable
+from compensator.lab.effects.effect import Effect
 from compensator.lab.rows import coverage as lab
 from compensator.lab.rows.dataset import Dataset
 
@@ -42,7 +43,7 @@ def coverage(store: Store, study_id: int, model_id: int | None = None) -> Covera
     with lab_errors():
         fit = material.fit_of(model)
         found, effects = lab.coverage_of(fit.dataset), judgeable(fit)
-    held = list(_held(found, fit.dataset, len(material.definition.too_short)))
+    held = list(_held(found, fit.dataset, len(material.definition.too_short), effects))
     advice = _advice(found, effects)
     count = {name: sum(one.standing == name for one in effects) for name in ("judgeable", "confounded")}
     best = f" What would help most: {advice[0].trial}." if advice else ""
@@ -71,7 +72,7 @@ def _judged(one: Judgeable) -> JudgedEffect:
     )
 
 
-def _held(found: lab.Coverage, dataset: Dataset, left_out: int) -> Iterator[Held]:
+def _held(found: lab.Coverage, dataset: Dataset, left_out: int, effects: Sequence[Judgeable]) -> Iterator[Held]:
     unit = dataset.facts.position_unit
     short = f"; {left_out} more too short for the filter at {dataset.cutoff_hz:.3g} Hz" if left_out else ""
     yield Held(
@@ -92,7 +93,7 @@ def _held(found: lab.Coverage, dataset: Dataset, left_out: int) -> Iterator[Held
     )
     yield Held(quantity="position", found=_position(found, unit), lacking=_position_lacks(dataset))
     yield Held(quantity="loads", found=_loads(found.loads_kg), lacking=_loads_lack(found.loads_kg))
-    yield Held(quantity="temperature", found=_warmth(found.temperature_c), lacking=_warmth_lacks(found.temperature_c))
+    yield Held(quantity="temperature", found=_warmth(found.temperature_c), lacking=_warmth_lacks(found, effects))
     yield Held(
         quantity="starts from rest",
         found=str(found.starts),
@@ -140,10 +141,23 @@ def _warmth(temperature_c: tuple[float, float] | None) -> str:
     return "not measured" if temperature_c is None else f"{temperature_c[0]:.1f} to {temperature_c[1]:.1f} degC"
 
 
-def _warmth_lacks(temperature_c: tuple[float, float] | None) -> str:
-    if temperature_c is not None and temperature_c[1] - temperature_c[0] >= WARM_K:
+def _warmth_lacks(found: lab.Coverage, effects: Sequence[Judgeable]) -> str:
+    """What the temperature leaves open: by what is said of each effect that goes by it, and of no other rule."""
+    asked = [one for one in effects if _goes_by_warmth(one.effect)]
+    shown = [one.smallest for one in asked if one.standing in ("judgeable", "confounded")]
+    if found.temperature_c is None or (asked and not shown):
+        return "effects of temperature cannot be seen"
+    if _warms_up(found.temperature_c) or not shown:  # without any, the model has them all
         return ""
-    return "effects of temperature cannot be seen"
+    return f"less than {WARM_K:g} K: effects of temperature show from {min(shown):.2%} of the effort on"
+
+
+def _goes_by_warmth(effect: Effect) -> bool:
+    return "temperature_c" in (*effect.channels, effect.varies_with)
+
+
+def _warms_up(temperature_c: tuple[float, float] | None) -> bool:
+    return temperature_c is not None and temperature_c[1] - temperature_c[0] >= WARM_K
 
 
 def _advice(found: lab.Coverage, effects: Sequence[Judgeable]) -> list[Advice]:
@@ -166,7 +180,7 @@ def _opens(one: Judgeable, found: lab.Coverage) -> str:
     effect = one.effect
     if effect.varies_with == "load_kg" and len(found.loads_kg) < FEWEST_LOADS:
         return LOADS
-    if "temperature_c" in (*effect.channels, effect.varies_with) and _warmth_lacks(found.temperature_c):
+    if _goes_by_warmth(effect) and not _warms_up(found.temperature_c):
         return WARMTH
     if effect.varies_with == "session_s":
         return SESSION
