@@ -82,12 +82,10 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     only_there = all(one.rows == "breakaway" for one in changed)
     impossible = next((found for name in added if (found := why_impossible(fit, name))), "")
     error = "held-out error" if rows == material.dataset.rows else "held-out error, near reversals too,"
-    advice = f"But {impossible}: leave it out." if impossible else _advice(done, gain)
-    sentence = "" if only_there else _sentence(done, effect, error, (before, after), gain, advice)
+    sentence = "" if only_there else _sentence(done, effect, error, before.relative, after.relative, gain, impossible)
     if starts is not None:
         error = "held-out error of the breakaway effort"
-        there = held_out_gain(*starts)
-        sentence += " " + _sentence(done, effect, error, starts, there, _advice(done, there))
+        sentence += " " + _sentence(done, effect, error, starts[0].relative, starts[1].relative, held_out_gain(*starts))
     elif only_there:
         sentence = (
             f"{done} {effect} changes nothing but the effort of breaking away, and too few starts from rest show that."
@@ -130,12 +128,10 @@ def _changed(before: HeldOut, after: HeldOut, parameters: list[FittedParameter])
     )
 
 
-def _advice(done: str, gain: Gain) -> str:
+def _sentence(done: str, effect: str, error: str, before: float, after: float, gain: Gain, impossible: str = "") -> str:
     helps, harms, neither = _ADVICE[done]
-    return helps if gain.low > 0.0 else harms if gain.high < 0.0 else neither
-
-
-def _sentence(done: str, effect: str, error: str, errors: tuple[HeldOut, HeldOut], gain: Gain, advice: str) -> str:
-    before, after = (one.relative for one in errors)
+    advice = helps if gain.low > 0.0 else harms if gain.high < 0.0 else neither
+    if impossible:
+        advice = f"But {impossible}: leave it out."
     told = gain.in_words(before, after)
     return f"{done} {effect} changes the {error} from {before:.2%} to {after:.2%} ({told}). {advice}"
