@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from playwright.sync_api import Route
 
 from tests.calibration.conftest import SEARCH, SWEEP
 
@@ -57,11 +58,16 @@ def test_the_engineer_goes_from_simulated_trials_to_the_trials_that_are_missing(
         page.wait_for_timeout(100)
         deadline -= 1
         assert deadline, queue
+    late: list[Route] = []  # what the page asks of a trial is answered late
+    page.route(re.compile(r"/trials/\d+$"), lambda route: late.append(route))
     page.get_by_role("button", name="Add the recorded trials to the study").click()
     page.get_by_text(re.compile(r"^([4-9]|\d\d) training trials, \d+ held out")).wait_for()
 
     page.get_by_role("link", name="1 Record").click()
     page.get_by_role("button", name="Record the next round").click()
+    for route in late:
+        route.continue_()
+    page.unroute(re.compile(r"/trials/\d+$"))
     page.get_by_text(re.compile(r"\d in the queue\. When they have ended|Nothing is queued")).wait_for()
     service.client.delete("/queue").raise_for_status()
 

@@ -212,10 +212,13 @@ class Study {
     this.#offerSuggestions(suggested);
   }
 
-  // only the joint of this bench can be recorded again: trials that came in from elsewhere are of another one
+  // only the joint of this bench can be recorded again: trials that came in from elsewhere are of another one. It is asked
+  // once: what was pressed of an earlier offer while that is asked again would have its answer taken away
   async #offerSuggestions(place) {
-    const first = await get(`/trials/${this.study.trials[0].trial_id}`).catch(() => null);
-    this.experiment = first && (await get(`/experiments/${first.experiment_id}`).catch(() => null));
+    if (this.experiment === undefined) {
+      const first = await get(`/trials/${this.study.trials[0].trial_id}`).catch(() => null);
+      this.experiment = first && (await get(`/experiments/${first.experiment_id}`).catch(() => null));
+    }
     if (this.experiment?.source === "imported") {
       replace(place, h("p", { class: "soft" }, "These trials were imported, or are those of a challenge: their joint does not stand on this bench, so nothing more can be recorded of it here."));
     } else suggestions(place, this.path, () => this.model, (sentence) => this.extended(sentence));
