@@ -5,10 +5,12 @@ the sampling rate, a tenth of the acceleration, which then looks like an elastic
 (w T)^8 / 630 (Fornberg 1988).
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numba import njit
 
-from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray, IntArray
 
 WEIGHTS = (4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0)  # of the differences over 2, 4, 6, 8 samples
 
@@ -22,6 +24,25 @@ def rate_of_change(values: FloatArray, rate_hz: float) -> FloatArray:
     derived = np.empty(len(values))
     _differences(np.asarray(values, dtype=np.float64), rate_hz, derived)
     return derived
+
+
+def rates_of_change(values: FloatArray, parts: Sequence[slice], rates_hz: Sequence[float]) -> FloatArray:
+    """The same of values (m,) of several trials, one after the other, each at its own rate; all at once."""
+    derived = np.empty(len(values))
+    if min((part.stop - part.start for part in parts), default=0) <= 2 * len(WEIGHTS) + 2:
+        for part, rate_hz in zip(parts, rates_hz, strict=True):
+            derived[part] = rate_of_change(values[part], rate_hz)
+        return derived
+    ends = np.array([parts[0].start, *(part.stop for part in parts)])
+    _differences_of_each(values, ends, np.array(rates_hz), derived)
+    return derived
+
+
+@njit(cache=True)
+def _differences_of_each(values: FloatArray, ends: IntArray, rates_hz: FloatArray, derived: FloatArray) -> None:
+    for index in range(len(rates_hz)):
+        own = slice(ends[index], ends[index + 1])
+        _differences(values[own], rates_hz[index], derived[own])
 
 
 @njit(cache=True)

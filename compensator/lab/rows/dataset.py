@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from compensator.lab.effects.effect import Effect, Motion, Shape
 from compensator.lab.errors import NotApplicableError
-from compensator.lab.recordings.differentiation import rate_of_change
+from compensator.lab.recordings.differentiation import rates_of_change
 from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.low_pass import low_pass_thinned
 from compensator.lab.recordings.processing import Signals
@@ -323,23 +323,26 @@ class Dataset:
             back_emf: of every trial's motion.
         """
         largest, nothing = float(np.abs(predicted).max(initial=0.0)), np.zeros(len(predicted))
+        rates = rates_of_change(predicted, self.samples, [trial.signals.rate_hz for trial in self.trials])
         trials = tuple(
-            replace(
-                trial,
-                motion=trial.motion.having(
+            Trial(
+                trial.signals,
+                trial.motion.having(
                     load_effort=load_effort[own],
                     inertia_beyond=beyond,
                     inertia=whole,
                     load_inertia=tip,
                     parting=parting[own],
                     predicted=predicted[own],
-                    effort_rate=rate_of_change(predicted[own], trial.signals.rate_hz),
+                    effort_rate=rates[own],
                     largest_effort=largest,
                     bend=nothing[own],
                     doubt=0.0,
                     late_s=late_s,
                     back_emf=back_emf,
                 ),
+                trial.picked,
+                trial.regime,
             )
             for trial, own, (beyond, whole, tip) in zip(self.trials, self.samples, inertias.T.tolist(), strict=True)
         )

@@ -1,7 +1,7 @@
 """Frictional lag."""
 
 import numpy as np
-from scipy.signal import lfilter
+from numba import njit
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.recordings.recording import FloatArray
@@ -21,9 +21,18 @@ def columns(motion: Motion, shape: Shape) -> FloatArray:
     speed, lag_s = shape
     settled = np.exp(-np.abs(motion.velocity) / speed)
     fade = np.exp(-motion.step_s / lag_s)
-    lagging, _ = lfilter([1.0 - fade], [1.0, -fade], settled, zi=fade * settled[:1])
-    found: FloatArray = motion.direction * (lagging - settled)
+    found: FloatArray = motion.direction * (_late(settled, fade) - settled)
     return found[None]
+
+
+@njit(cache=True)
+def _late(values: FloatArray, fade: float) -> FloatArray:
+    """Values (n,) through a lag of first order that keeps such a share of itself from sample to sample."""
+    late, state = np.empty(len(values)), values[0]
+    for row in range(len(values)):
+        state = (1.0 - fade) * values[row] + fade * state
+        late[row] = state
+    return late
 
 
 def holds(shape: Shape) -> bool:
