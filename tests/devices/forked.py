@@ -83,22 +83,6 @@ def _server() -> socket.socket:
     return ours
 
 
-@cache
-def _server() -> socket.socket:
-    """Where one asks for a device."""
-    ours, its = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    with its, no_turns():
-        words = [sys.executable, "-m", "tests.devices.forked"]
-        process = subprocess.Popen(words, stdin=its, stdout=subprocess.DEVNULL, cwd=ROOT)
-
-    def end() -> None:
-        ours.close()
-        process.wait()
-
-    atexit.register(end)
-    return ours
-
-
 def _warm_up() -> None:
     """Start a device of each kind, and end it: all is imported then, the plant compiled, and no thread left."""
     from bench.cli.operation import simulate_device
