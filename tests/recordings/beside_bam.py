@@ -106,7 +106,7 @@ def _ours(folder: Path, hold_out_kp: int) -> dict[str, Any]:
     named = diagnose(base).classes
     fits = [base]
     if named:
-        fits.append(fit_effects(dataset, [*base.names, named[0][0]], base.training))
+        fits.append(fit_effects(base, [*base.names, named[0][0]]))
         times.append(time.process_time())
     logs = _logs([one for one in everything if one.conditions["kp"] == hold_out_kp])
     errors = [logs.mean_absolute_error_rad(simulated(fit, logs)) for fit in fits]

@@ -38,7 +38,7 @@ def ask_lab(fit: Fit, several: bool) -> LabAnswer:
         found = search(fit, first=first)
         fit, last, named = found.fit, found.last, [(name,) for name in found.added]
     elif classes:
-        fit = fit_effects(fit.dataset, [*fit.names, classes[0][0]], fit.training)
+        fit = fit_effects(fit, [*fit.names, classes[0][0]])
     return LabAnswer(
         verdict=first.verdict,
         first=classes[0] if classes else (),
@@ -105,7 +105,7 @@ def left_beside(fit: Fit, base: Candidates, name: str, named: tuple[str, ...]) -
 def _oracle(fit: Fit, base: Candidates, names: tuple[str, ...]) -> tuple[tuple[Standing | None, ...], float]:
     """How far each truth stands out of the model with all the others, and the error of the model with all of them."""
     known = [name for name in names if name and can_be_seen(fit, name)]
-    whole = fit_effects(fit.dataset, [*fit.names, *known], fit.training) if known else fit
+    whole = fit_effects(fit, [*fit.names, *known]) if known else fit
     standings = []
     for name in names:
         others = [other for other in known if other != name]
@@ -127,7 +127,7 @@ def _judged(fit: Fit, base: Candidates, others: list[str], name: str) -> Candida
     show_in: MotionRows = "sliding" if effect_named(name).rows == "sliding" else "moving"
     if not others and show_in == base.show_in:
         return base
-    rest = fit_effects(fit.dataset, [*fit.names, *others], fit.training)
+    rest = fit_effects(fit, [*fit.names, *others])
     return gather(widened(rest, "moving") if show_in == "moving" else rest, show_in)
 
 

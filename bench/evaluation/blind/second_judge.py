@@ -129,7 +129,7 @@ def judge_second(item: Item) -> Result:
 def _whole(fit: Fit, names: tuple[str, ...]) -> Fit:
     """The model with all that is hidden, as far as the catalogue and these trials have it."""
     known = [name for name in names if name and can_be_seen(fit, name)]
-    return fit_effects(fit.dataset, [*fit.names, *known], fit.training) if known else fit
+    return fit_effects(fit, [*fit.names, *known]) if known else fit
 
 
 def _without_name(fit: Fit, name: str) -> LabAnswer:

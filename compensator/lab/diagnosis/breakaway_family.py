@@ -91,7 +91,7 @@ def breakaway_answer(
     notes = [] if found else _too_few(stretches)
     verdict: Verdict = "missing" if found else "nothing"
     effect, in_motion = ranked[0].effect, found and ranked[0].effect.rows != "breakaway"
-    explained = fit_effects(fit.dataset, [*fit.names, effect.name], fit.training) if in_motion else None
+    explained = fit_effects(fit, [*fit.names, effect.name]) if in_motion else None
     return Answer(verdict, sentence, p_value, ranked, None, notes, explained=explained), left_out
 
 

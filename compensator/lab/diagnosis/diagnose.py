@@ -143,7 +143,7 @@ def _left_in_sliding(fit: Fit, gathered: Candidates, memory: Answer) -> list[Not
     if memory.verdict != "missing" or memory.remains or memory.explained is None:
         return []
     name = memory.candidates[0].effect.name
-    explained = fit_effects(fit.dataset, [*fit.names, name], fit.training)
+    explained = fit_effects(fit, [*fit.names, name])
     return what_remains(explained, gathered, name)
 
 

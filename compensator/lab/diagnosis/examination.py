@@ -56,7 +56,7 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
         candidate = _candidate(gathered, item, (before, afters[index]), rivals, max(alike.values(), default=0.0))
         if candidate.score >= VERY_STRONG and candidate.physical and not is_confirmed(candidate):
             # a shape of the model may have taken what it explains, as a Stribeck curve of a high speed takes drag
-            explained = fit_effects(fit.dataset, [*fit.names, item.block.name], fit.training)
+            explained = fit_effects(fit, [*fit.names, item.block.name], sliding)
             afters[index] = _held_out(explained, gathered.show_in)
             candidate = as_in_the_ladder(candidate, fit, explained, gathered.show_in)
         found.append(candidate)

@@ -118,7 +118,7 @@ class _Family:
             return "may be luck among all that was tried"
         if self._is_shadow(best):
             return f"explains much less than {self.most.block.name}, which cannot be it"
-        explained = fit_effects(fit.dataset, [*fit.names, candidate.effect.name], fit.training)
+        explained = fit_effects(fit, [*fit.names, candidate.effect.name])
         first = as_in_the_ladder(candidate, fit, explained, show_in)
         if not is_confirmed(first):
             return "not so in the model with all shapes found anew"

@@ -116,7 +116,7 @@ def _forward(fit: Fit, most: int, diagnosis: Diagnosis, outset: float) -> Search
     while _is_to_add(diagnosis, explained) and len(fit.names) < len(start.names) + most:
         progress.enter(_adding(len(fit.names) - len(start.names) + 1))
         name, *rivals = diagnosis.classes[0]
-        added = _step("add", name, None, fit_effects(fit.dataset, [*fit.names, name], fit.training))
+        added = _step("add", name, None, fit_effects(fit, [*fit.names, name]))
         steps.append(replace(added, rivals=tuple(rivals)))
         swapped = _swaps(start, steps[-1].fit)
         dropped = _drops(start, (swapped or steps)[-1].fit, last_too=bool(swapped))
@@ -175,13 +175,11 @@ def _swaps(start: Fit, fit: Fit) -> list[Step]:
     """Exchange added effects, oldest first, for what the rows speak for more now that the others are in the model."""
     steps: list[Step] = []
     for name in [name for name in fit.names if name not in start.names][:-1]:
-        without = fit_effects(fit.dataset, [other for other in fit.names if other != name], fit.training)
+        without = fit_effects(fit, [other for other in fit.names if other != name])
         rows = effect_named(name).rows
         better = None if rows == "breakaway" else best_named(without, rows)
         if better not in (None, name) and better not in fit.names:
-            swapped = fit_effects(
-                fit.dataset, [better if other == name else other for other in fit.names], fit.training
-            )
+            swapped = fit_effects(fit, [better if other == name else other for other in fit.names])
             known = determination(without)
             if held_out(swapped, weight=known).rms < held_out(fit, weight=known).rms:
                 fit = swapped
@@ -200,7 +198,7 @@ def _drops(start: Fit, fit: Fit, last_too: bool) -> list[Step]:
     steps: list[Step] = []
     added = [name for name in fit.names if name not in start.names]
     for name in added if last_too else added[:-1]:
-        without = fit_effects(fit.dataset, [other for other in fit.names if other != name], fit.training)
+        without = fit_effects(fit, [other for other in fit.names if other != name])
         rows = fit.dataset.choice_for([effect_named(name)])
         alike = widened(without, fit.dataset.choice_for(fit.effects))  # else the two are judged on other rows
         known = determination(without)

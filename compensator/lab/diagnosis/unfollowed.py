@@ -65,7 +65,7 @@ def _leaves_nothing(gathered: Candidates, candidate: Candidate, best: Evidence, 
     if candidate.effect.builds_on is None or not is_confirmed(candidate):
         return False
     fit = gathered.fit
-    grown = fit_effects(fit.dataset, [*fit.names, candidate.effect.name], fit.training)
+    grown = fit_effects(fit, [*fit.names, candidate.effect.name])
     given, left_open = gathered.with_block(best.block), open_columns(grown)
     if left_open.shape[1]:
         given = given.with_columns(left_open)
@@ -111,7 +111,7 @@ def with_curve(fit: Fit, driver: str | None) -> Fit | None:
     if name is None or name in fit.names:
         return None
     try:
-        return fit_effects(fit.dataset, [*fit.names, name], fit.training)
+        return fit_effects(fit, [*fit.names, name])
     except (NotApplicableError, UnusableDataError):
         return None
 

@@ -20,7 +20,7 @@ from compensator.lab.rows.dataset import Dataset, RowChoice
 
 MOST_PASSES = 20  # each shrinks the change of the predicted load several times
 MOST_SEARCHES = 3  # of shapes, where one of them says how the position is misread
-SETTLED_SHARE = 1e-5  # change of the prediction that counts as none: a fiftieth of the least that is worth a name
+SETTLED_SHARE = 1e-5  # of the prediction, that may be left to go: a fiftieth of the least that is worth a name
 
 
 def fit_model(
@@ -29,6 +29,7 @@ def fit_model(
     training: BoolArray | None = None,
     shapes: Mapping[str, Shape] | None = None,
     sliding: Fit | None = None,
+    start: Mapping[str, Shape] | None = None,
 ) -> Fit:
     """Fit the named effects, every coefficient within its physical bounds.
 
@@ -38,6 +39,7 @@ def fit_model(
         training: rows to fit to, shape (N,); all counted rows if None.
         shapes: nonlinear shapes to keep as they are; those not given are searched.
         sliding: what `fit_sliding` gives for these arguments, where it is known.
+        start: shapes of a model like this one, from which the search goes where the rows hold a prediction.
 
     Raises:
         UnusableDataError: no effects, or fewer rows than columns.
@@ -48,21 +50,25 @@ def fit_model(
     rows = dataset.counted if training is None else training
     chosen = [effect_named(name) for name in effects]
     if not (rows & (dataset.regime != Regime.SLIDING)).any() or dataset.rows != "sliding":
-        return _fit(dataset, chosen, rows, shapes or {}, np.ones(len(rows)))
+        return _fit(dataset, chosen, rows, shapes or {}, np.ones(len(rows)), start or {})
     # rows near reversals were asked for by an effect that lives there: they must not outvote the others
-    first = sliding or fit_sliding(dataset, effects, rows, shapes)
+    first = sliding or fit_sliding(dataset, effects, rows, shapes, start)
     kept = {**{name: first.shapes[name] for name in first.names}, **(shapes or {})}
-    return _fit(dataset, chosen, rows, kept, regime_weights(dataset, first.residual, rows))
+    return _fit(dataset, chosen, rows, kept, regime_weights(dataset, first.residual, rows), start or {})
 
 
 def fit_sliding(
-    dataset: Dataset, effects: Sequence[str], training: BoolArray, shapes: Mapping[str, Shape] | None = None
+    dataset: Dataset,
+    effects: Sequence[str],
+    training: BoolArray,
+    shapes: Mapping[str, Shape] | None = None,
+    start: Mapping[str, Shape] | None = None,
 ) -> Fit:
     """Those of the effects that steady sliding shows, fitted to the rows of it. Arguments as `fit_model`."""
     chosen = [effect_named(name) for name in effects]
     steady = [effect for effect in chosen if effect.rows == "sliding"] or chosen
     rows = training & (dataset.regime == Regime.SLIDING)
-    return _fit(dataset, steady, rows, shapes or {}, np.ones(len(rows)))
+    return _fit(dataset, steady, rows, shapes or {}, np.ones(len(rows)), start or {})
 
 
 def widened(fit: Fit, rows: RowChoice) -> Fit:
@@ -74,30 +80,40 @@ def widened(fit: Fit, rows: RowChoice) -> Fit:
     return fit_model(fit.dataset, fit.names, chosen, fit.shapes)
 
 
-def fit_effects(dataset: Dataset, effects: Sequence[str], training: BoolArray) -> Fit:
-    """Fit the named effects to the trials of some training rows: to the study's rows, wider where an effect needs it.
+def fit_effects(fit: Fit, effects: Sequence[str], sliding: Fit | None = None) -> Fit:
+    """Fit other effects to the trials of a fit: to the study's rows, wider where an effect needs it.
 
-    Arguments and errors as `fit_model`; `training` tells which trials.
+    All shapes are found anew, from those of the fit on. `effects`, `sliding` and errors as `fit_model`.
     """
-    trials = dataset.trial_index
+    dataset = fit.dataset
     rows = dataset.in_regimes(dataset.choice_for([effect_named(name) for name in effects]))
-    return fit_model(dataset, effects, rows & np.isin(trials, trained_trials(dataset, training)))
+    rows = rows & np.isin(dataset.trial_index, trained_trials(dataset, fit.training))
+    return fit_model(dataset, effects, rows, sliding=sliding, start=fit.shapes)
 
 
 def _fit(
-    dataset: Dataset, effects: Sequence[Effect], rows: BoolArray, kept: Mapping[str, Shape], weight: FloatArray
+    dataset: Dataset,
+    effects: Sequence[Effect],
+    rows: BoolArray,
+    kept: Mapping[str, Shape],
+    weight: FloatArray,
+    start: Mapping[str, Shape],
 ) -> Fit:
     misread = any(effect.misreads is not None for effect in effects)
     dataset = (dataset if misread else dataset.as_read()).straightened()
     plain = [effect for effect in effects if not effect.uses_prediction]
-    if dataset.is_predicted and all(effect.name in kept for effect in effects if effect.shape_names):
+    shapes = {**first_shapes(dataset, effects), **start, **kept}
+    if len(plain) == len(effects) or not dataset.is_predicted:
+        found = find_shapes(dataset, plain or effects, rows, kept, weight, start)
+        fit = fit_linear(dataset, plain or effects, rows, found, weight)
+        if len(plain) == len(effects):
+            return fit
+        fit = _settle(fit, effects, {**shapes, **found}, weight)
+    else:
         # the prediction of a model that is nearly this one is a better start than none
-        return _settle(fit_linear(dataset, effects, rows, kept, weight), effects, kept, weight)
-    shapes = find_shapes(dataset, plain or effects, rows, kept, weight)
-    fit = fit_linear(dataset, plain or effects, rows, shapes, weight)
-    if len(plain) == len(effects):
-        return fit
-    fit = _settle(fit, effects, {**first_shapes(dataset, effects), **fit.shapes, **kept}, weight)
+        fit = _settle(fit_linear(dataset, effects, rows, shapes, weight), effects, shapes, weight)
+        if all(effect.name in kept for effect in effects if effect.shape_names):
+            return fit
     for _ in range(MOST_SEARCHES):
         before, own = fit.shapes, with_own_prediction(fit.dataset, fit.terms)
         shapes = find_shapes(own, effects, rows, kept, weight * own.steadiness, before)
@@ -120,7 +136,10 @@ def _settle(fit: Fit, effects: Sequence[Effect], shapes: Mapping[str, Shape], we
         fit = fit_linear(with_own_prediction(given.dataset, given.terms), effects, fit.training, shapes, weight)
         step = fit.predicted - before
         change = float(np.linalg.norm(step))
-        if change <= SETTLED_SHARE * float(np.linalg.norm(before)) or (change >= last and earlier is None):
+        # each step is about as much smaller than the one before, so the last two say how far it is still to go
+        rate = min(change / last, 0.5)
+        to_go = change if earlier is None else change * rate / (1.0 - rate)
+        if to_go <= SETTLED_SHARE * float(np.linalg.norm(before)) or (change >= last and earlier is None):
             break
         given, before = fit, fit.predicted
         if earlier is not None and change < last and not misread:

@@ -75,7 +75,7 @@ def test_nothing_bends_where_nothing_does(extra):
 @pytest.mark.parametrize(("extra", "there"), [(lambda x: hose(x) + asymmetry(x), True), (asymmetry, False)])
 def test_what_bends_beside_a_name_is_told_once_the_name_is_in_the_model(extra, there):
     fit = fit_of(extra)
-    assert bends(fit_effects(fit.dataset, [*fit.names, "viscous_asymmetry"], fit.training)) == there
+    assert bends(fit_effects(fit, [*fit.names, "viscous_asymmetry"])) == there
 
 
 def test_what_is_small_bends_where_no_luck_brings_it_and_it_helps_for_sure(monkeypatch):

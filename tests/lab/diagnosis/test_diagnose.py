@@ -163,7 +163,7 @@ def test_only_more_free_play_than_is_known_is_missing(told_rad, named):
     found = diagnose(fit)
     loose = found.verdict == "missing" and found.candidates[0].effect.name == "backlash"
     assert loose == named, found.sentence
-    added = fit_effects(fit.dataset, [*DEFAULT, "backlash"], fit.training)
+    added = fit_effects(fit, [*DEFAULT, "backlash"])
     assert why_impossible(added, "backlash") == ("" if named else TOLD)
 
 

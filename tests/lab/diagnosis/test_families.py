@@ -50,7 +50,7 @@ def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypa
     fit, gathered, named = twisted
     monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=gain))
     if found:
-        grown = fit_effects(fit.dataset, [*fit.names, "elasticity"], fit.training)
+        grown = fit_effects(fit, [*fit.names, "elasticity"])
         terms = [replace(one, **found) if one.effect.name == "elasticity" else one for one in grown.terms]
         monkeypatch.setattr(families, "fit_effects", lambda *_: replace(grown, terms=terms))
     answer = answer_of(fit, gathered, named, None)

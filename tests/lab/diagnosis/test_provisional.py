@@ -54,7 +54,7 @@ def test_the_picture_is_the_curve_that_was_hidden(fit, found):
 
 def test_once_it_is_in_the_model_nothing_of_it_is_left(fit, found):
     name = provisional(fit, found).effect.name
-    filled = fit_effects(fit.dataset, [*fit.names, name], fit.training)
+    filled = fit_effects(fit, [*fit.names, name])
     again = diagnose(filled)
     assert provisional(filled, again) is None or provisional(filled, again).effect.name != name
     assert len(filled.shapes[name]) == 7

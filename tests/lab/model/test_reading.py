@@ -57,7 +57,7 @@ def test_no_more_is_left_than_of_a_joint_that_is_read_exactly(fitted):
 
 
 def test_a_model_without_it_is_fitted_to_what_is_read(fitted):
-    plain = fit_effects(fitted.dataset, DEFAULT, fitted.training)
+    plain = fit_effects(fitted, DEFAULT)
     for trial in plain.dataset.trials:
         assert trial.motion.position is trial.signals.position
     alone = fit_model(fitted.dataset.as_read(), DEFAULT)
