@@ -12,7 +12,7 @@ from scipy.stats import t as student
 from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
 from compensator.lab.at_rest.breakaway_regression import BreakawayFit, fit_breakaway
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
-from compensator.lab.at_rest.rests import Windows, limits_of, windows_of
+from compensator.lab.at_rest.rests import Windows, extrapolated, limits_of, windows_of
 from compensator.lab.chance import chance_in_words
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import relative_error, rms
@@ -84,7 +84,7 @@ def compare_at_rest(fit: Fit) -> RestComparison | None:
     starts = _starts(fit)
     limits = limits_of(fit, windows, starts)
     left = rms(fit.residual[fit.training])  # a model that leaves so much in sliding says no more of rest
-    scatter = np.hypot(left, starts.scatter if starts is not None else 0.0)
+    scatter = np.hypot(left, starts.scatter if starts is not None else extrapolated(fit))
     known_from = limits.known_from
     sides = [
         _side(fit, windows, beyond, np.hypot(scatter, deviation), known_from)
@@ -135,6 +135,11 @@ def at_rest_in_words(found: RestComparison, unit: str) -> str:
         beyond = f"{stretches}, {found.outside:.1%} lie beyond what friction holds, by up to {found.largest:.3g} {unit}"
         if found.outside <= MOSTLY:
             return f"{beyond}: no more than chance."
+        if not found.by_starts:
+            return (
+                f"{beyond}: no more than sliding leaves open, which shows static friction down to its slowest speed "
+                "only; record breakaway ramps."
+            )
         return (
             f"{beyond}: no more than what the model leaves while the joint slides, so that rest tells nothing; mend "
             "the model there first."

@@ -9,7 +9,7 @@ in every rest (Armstrong, Dupont, Canudas de Wit 1994). Half the span is static 
 where starts from rest tell of more, that. Its middle is gravity, springs and offset, which sliding tells.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from compensator.lab.at_rest.breakaway_rows import at_rest_motion, measured_posi
 from compensator.lab.at_rest.breakaways import resolution_of, rests_of
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import BreakawayShare, Motion, Onset
-from compensator.lab.model.fitted import Fit
+from compensator.lab.model.fitted import STATIC, Fit
 from compensator.lab.model.intervals import without_each
 from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.rows.dataset import Dataset
@@ -113,6 +113,14 @@ def limits_of(fit: Fit, windows: Windows, starts: BreakawayFit | None) -> Limits
     spread = (without - without.mean(axis=0)) * np.sqrt((count - 1.0) / count)
     low_sd, high_sd = (np.linalg.norm(spread @ columns.T, axis=0) for columns in (low, high))
     return Limits(middle - half, middle + half, low_sd, high_sd, max(count - 1, 1))
+
+
+def extrapolated(fit: Fit) -> float:
+    """Static friction beyond that of the slowest sliding: its curve says it, no row shows it; in the effort's unit."""
+    slowest = np.array([fit.dataset.scales.slow, 0.0])
+    motion = replace(fit.dataset.trials[0].motion, velocity=slowest, direction=np.ones(2))
+    static = [term for term in fit.terms if term.effect.name == STATIC]
+    return float(sum(term.coefficients @ np.diff(term.effect.columns(motion, term.shape))[:, 0] for term in static))
 
 
 def _columns(fit: Fit, windows: Windows, way: float) -> FloatArray:

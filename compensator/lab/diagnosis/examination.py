@@ -16,7 +16,6 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
-from compensator.lab.model.weights import determination
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import VERY_STRONG, Evidence, Screening, kept_evidence, new_directions
@@ -82,9 +81,7 @@ def as_in_the_ladder(candidate: Candidate, fit: Fit, explained: Fit, show_in: Mo
 
 
 def _held_out(fit: Fit, show_in: MotionRows) -> HeldOut:
-    rows = show_in if fit.dataset.rows == "sliding" else fit.dataset.rows
-    # near reversals a part of the whole error is asked for, since every chain leaves a little there
-    return held_out(fit, rows, determination(fit) if show_in == "sliding" else None)
+    return held_out(fit, show_in if fit.dataset.rows == "sliding" else fit.dataset.rows)
 
 
 def share_of(show_in: MotionRows) -> float:

@@ -21,9 +21,8 @@ from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import predicts_better
-from compensator.lab.model.held_out_error import HeldOut
+from compensator.lab.model.held_out_error import HeldOut, on_even_terms
 from compensator.lab.model.validation import held_out
-from compensator.lab.model.weights import determination
 from compensator.lab.screening.evidence import VERY_STRONG
 
 MOST_EFFECTS = 4
@@ -180,8 +179,8 @@ def _swaps(start: Fit, fit: Fit) -> list[Step]:
         better = None if rows == "breakaway" else best_named(without, rows)
         if better not in (None, name) and better not in fit.names:
             swapped = fit_effects(fit, [better if other == name else other for other in fit.names])
-            known = determination(without)
-            if held_out(swapped, weight=known).rms < held_out(fit, weight=known).rms:
+            now, before = on_even_terms(held_out(swapped), held_out(fit))
+            if now.rms < before.rms:
                 fit = swapped
                 steps.append(_step("swap", str(better), name, fit))
     return steps
@@ -201,8 +200,7 @@ def _drops(start: Fit, fit: Fit, last_too: bool) -> list[Step]:
         without = fit_effects(fit, [other for other in fit.names if other != name])
         rows = fit.dataset.choice_for([effect_named(name)])
         alike = widened(without, fit.dataset.choice_for(fit.effects))  # else the two are judged on other rows
-        known = determination(without)
-        if not predicts_better(held_out(fit, rows, known), held_out(alike, rows, known)):
+        if not predicts_better(held_out(fit, rows), held_out(alike, rows)):
             fit = without
             steps.append(_step("drop", name, None, fit))
     return steps

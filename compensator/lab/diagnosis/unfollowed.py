@@ -22,7 +22,6 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
-from compensator.lab.model.weights import determination
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.rows.picture import binned_mean
 from compensator.lab.screening.base import HYSTERESIS_DRIVER
@@ -82,9 +81,8 @@ def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> tuple[Evidence
     best = generic.evidence[0]
     if best.score <= 0.0 or best.p_value > SIGNIFICANT:
         return None
-    known = determination(fit)
     grown = with_columns(fit, best.block.name, gathered.curves.columns[best.block.name])
-    before, after = (held_out(model, None, known) for model in (fit, grown))
+    before, after = (held_out(model) for model in (fit, grown))
     return (best, after) if held_out_gain(before, after).low >= LEAST_GAIN else None
 
 

@@ -24,8 +24,8 @@ class HeldOut:
         unit: which independent unit (trial or block) each of these rows belongs to.
         relative: root of residual power over effort power.
         rms: root mean square residual, in the effort's unit.
-        doubt: variance of each row's prediction for not knowing the coefficients any better, over that of its noise;
-            none where a study names what is held out.
+        doubt: variance of each row's prediction for not knowing the coefficients any better, unless a study names what
+            is held out, and because the model bends there (see `determination`), over that of its noise.
     """
 
     kind: HeldOutKind
@@ -36,13 +36,6 @@ class HeldOut:
     relative: float
     rms: float
     doubt: FloatArray = field(default_factory=lambda: np.zeros(1))
-
-    def weighted(self, weight: FloatArray) -> "HeldOut":
-        """The same, each of these rows multiplied by a weight."""
-        residual, effort = weight * self.residual, weight * self.effort
-        return replace(
-            self, residual=residual, effort=effort, relative=relative_error(residual, effort), rms=rms(residual)
-        )
 
     def power_by_unit(self) -> FloatArray:
         """Sum of squared residuals of each independent unit, in order of its label."""
@@ -72,9 +65,17 @@ def on_even_terms(one: HeldOut, other: HeldOut) -> tuple[HeldOut, HeldOut]:
     """Two models' errors on the same rows, each row counting by how well either model could predict it.
 
     Where a trial is the only one to tell of a coefficient, as the only one without load does of the arm alone, what the
-    others make of it is a guess by any model, and would outweigh all that they do know: weights are those of errors of
-    known variance (Aitken 1935), the larger of the two models'. Trials that are alike are left as they are.
+    others make of it is a guess by any model, and would outweigh all that they do know; so would, beside a dead time,
+    rows without current. Weights are those of errors of known variance (Aitken 1935), the larger of the two models'.
+    Rows that are alike are left as they are.
     """
     weight = 1.0 / np.sqrt(1.0 + np.broadcast_to(np.maximum(one.doubt, other.doubt), one.residual.shape))
-    first, second = (replace(error.weighted(weight), doubt=np.zeros(1)) for error in (one, other))
+    first, second = (_weighted(error, weight) for error in (one, other))
     return first, second
+
+
+def _weighted(error: HeldOut, weight: FloatArray) -> HeldOut:
+    """The same, each of its rows multiplied by a weight, and nothing in doubt any more."""
+    residual, effort = weight * error.residual, weight * error.effort
+    relative = relative_error(residual, effort)
+    return replace(error, residual=residual, effort=effort, relative=relative, rms=rms(residual), doubt=np.zeros(1))

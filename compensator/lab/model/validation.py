@@ -4,14 +4,13 @@ Held-out trials where the study names some; else each training trial is left out
 per trial, so leaving one out costs one small solve. Nonlinear shapes stay those of the whole training set.
 """
 
-from dataclasses import replace
-
 import numpy as np
 
 from compensator.lab.model.fitted import Fit, trained_trials
 from compensator.lab.model.held_out_error import HeldOut, HeldOutKind, relative_error, rms
 from compensator.lab.model.linear import solve_without
 from compensator.lab.model.prediction import beyond_tangent
+from compensator.lab.model.weights import determination
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import RowChoice
 
@@ -19,7 +18,7 @@ UNDETERMINED = 1e-9  # share of what all trials tell of a coefficient below whic
 FEWEST_TRIALS = 4  # fewer cannot be resampled or left out one by one
 
 
-def held_out(fit: Fit, rows: RowChoice | None = None, weight: FloatArray | None = None) -> HeldOut:
+def held_out(fit: Fit, rows: RowChoice | None = None) -> HeldOut:
     """The held-out error of a fit: on the trials it was not trained on, or by leaving one out in turn.
 
     With fewer than four training trials and none held out, stretches of BLOCK_S are left out instead: an optimistic
@@ -28,19 +27,14 @@ def held_out(fit: Fit, rows: RowChoice | None = None, weight: FloatArray | None 
     Args:
         fit: to be judged.
         rows: that are judged; None takes the study's.
-        weight: of each row's residual and effort, shape (N,), for models to be held against each other by what they
-            know well (see `Dataset.steadiness`); None: all count alike.
     """
-    found = _held_out(fit, fit.dataset.in_regimes(rows or fit.dataset.rows))
-    return found if weight is None else found.weighted(weight[found.rows])
-
-
-def _held_out(fit: Fit, judged: BoolArray) -> HeldOut:
+    judged = fit.dataset.in_regimes(rows or fit.dataset.rows)
     trials = fit.dataset.trial_index
     trained = trained_trials(fit.dataset, fit.training)
     outside = judged & ~np.isin(trials, trained)
     if outside.any():
-        return _result(fit, "hold-out", outside, fit.residual[outside], independent_units(fit, outside))
+        unit = independent_units(fit, outside)
+        return _result(fit, "hold-out", outside, fit.residual[outside], unit, np.zeros(len(unit)))
     if len(np.unique(trials[fit.training & judged])) >= FEWEST_TRIALS:
         return _leave_out(fit, "leave-one-trial-out", trials, judged)
     return _leave_out(fit, "leave-one-block-out", fit.dataset.block_index, judged)
@@ -70,7 +64,7 @@ def _leave_out(fit: Fit, kind: HeldOutKind, units: IntArray, judged: BoolArray) 
         doubt[own] = _doubt(inside, gram)
         if fit.dataset.is_bent and len(seen):
             residual[seen] -= _beyond_tangent(fit, kept, rest, rows & (units == label))
-    return replace(_result(fit, kind, rows, residual[rows], units[rows]), doubt=doubt[rows[fit.training]])
+    return _result(fit, kind, rows, residual[rows], units[rows], doubt[rows[fit.training]])
 
 
 def _by_label(labels: IntArray) -> dict[int, IntArray]:
@@ -104,6 +98,10 @@ def _beyond_tangent(fit: Fit, kept: BoolArray, coefficients: FloatArray, rows: B
     )
 
 
-def _result(fit: Fit, kind: HeldOutKind, rows: BoolArray, residual: FloatArray, unit: IntArray) -> HeldOut:
+def _result(
+    fit: Fit, kind: HeldOutKind, rows: BoolArray, residual: FloatArray, unit: IntArray, doubt: FloatArray
+) -> HeldOut:
+    """Errors of the chosen rows (n,), of which coefficients that are not known any better leave such doubt (n,)."""
     effort = fit.dataset.effort[rows]
-    return HeldOut(kind, rows, residual, effort, unit, relative_error(residual, effort), rms(residual))
+    doubt = doubt + (1.0 / determination(fit)[rows] ** 2 - 1.0)
+    return HeldOut(kind, rows, residual, effort, unit, relative_error(residual, effort), rms(residual), doubt)

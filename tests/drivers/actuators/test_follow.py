@@ -34,6 +34,7 @@ from tests.drivers.robstride.test_foreign_peer import peer
 
 TORQUE_N_M = 0.02
 CYCLES, PERIOD_S = 160, 0.01  # longer than is recorded
+HOST_MAY_WAIT_S = 5.0  # of a watchdog: host, device and listener share one process here, and a busy machine
 
 
 def swing(push):
@@ -101,7 +102,7 @@ def moteus_host(bus):
         await controller.set_stop()
         for number in range(CYCLES):
             await controller.set_position(
-                position=nan, velocity=0.0, kp_scale=0.0, kd_scale=0.0, watchdog_timeout=0.5, query=True,
+                position=nan, velocity=0.0, kp_scale=0.0, kd_scale=0.0, watchdog_timeout=HOST_MAY_WAIT_S, query=True,
                 feedforward_torque=TORQUE_N_M if number // 20 % 2 == 0 else -TORQUE_N_M,
             )  # fmt: skip
             await asyncio.sleep(PERIOD_S)
@@ -121,7 +122,11 @@ HOSTS = {
     "cubemars": (cubemars_host, mit(CubemarsMotor, "cubemars", cubemars.MODELS["AK40-10"]), {"model": "AK40-10"}),
     "robstride": (robstride_host, mit(RobstrideMotor, "robstride", robstride.MODELS["RS02"], 127), {"model": "RS02"}),
     "moteus": (moteus_host, lambda: serve_moteus(MoteusBusSettings(interface="virtual", channel="moteus")), {}),
-    "odrive": (odrive_host, lambda: serve_odrive(OdriveSimulation(interface="virtual", channel="odrive")), {}),
+    "odrive": (
+        odrive_host,
+        lambda: serve_odrive(OdriveSimulation(interface="virtual", channel="odrive", watchdog_s=HOST_MAY_WAIT_S)),
+        {},
+    ),
 }
 
 

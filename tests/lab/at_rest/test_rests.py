@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.at_rest.rest_comparison import RestComparison, Side, at_rest_in_words, compare_at_rest
+from compensator.lab.at_rest.rests import extrapolated
 from compensator.lab.comparison.comparison import compare
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.model.fit import fit_model
@@ -42,14 +43,15 @@ def test_a_complete_model_holds_at_rest(seed):
 
 
 def test_what_a_poor_model_says_of_rest_is_not_called_chance():
-    def said(outside, largest):
+    def said(outside, largest, by_starts=True):
         side = Side(outside, largest, 1.0, "one", 2.0)
-        return at_rest_in_words(RestComparison(40, 2, side, replace(side, outside=0.0), 0.01, 0.5, False), "A")
+        return at_rest_in_words(RestComparison(40, 2, side, replace(side, outside=0.0), 0.01, 0.5, by_starts), "A")
 
     assert said(0.9, 0.6).endswith(
         "no more than what the model leaves while the joint slides, so that rest tells "
         "nothing; mend the model there first."
     )
+    assert said(0.9, 0.6, by_starts=False).endswith("record breakaway ramps.")
     assert "no more than chance" in said(0.02, 0.01)
     assert said(0.0, 0.0) == "At rest: of 40 stretches of 0.1 s, all lie within what friction holds."
 
@@ -93,6 +95,29 @@ def trial(name: str, position: np.ndarray, lean_rad: float, seed: int) -> Record
     effort = 0.02 * np.gradient(velocity, time_s) + 0.03 * velocity + COULOMB * np.sign(velocity)
     effort += MOMENT * np.sin(position + lean_rad) + NOISE * np.random.default_rng(seed).standard_normal(len(position))
     return Recording(name, "x", {}, {"time_s": time_s, "position_rad": position, "torque_n_m": effort})
+
+
+def held_at(effort: float) -> Fit:
+    """Swings with a Stribeck curve, and a joint that is held by that effort without having started."""
+    time_s = np.arange(0.0, 8.0, 1.0 / RATE_HZ)
+    made = []
+    for number, hz in enumerate((0.3, 0.5, 0.8, 1.2) * 3):
+        one = trial(f"swing-{number}", 0.4 * np.sin(2.0 * np.pi * hz * time_s), 0.0, number)
+        velocity = np.gradient(one.channels["position_rad"], time_s)
+        one.channels["torque_n_m"] += COULOMB * np.exp(-np.abs(velocity) / 0.2) * np.sign(velocity)
+        made.append(one)
+    rest = trial("held", np.zeros(len(time_s)), 0.0, 9)
+    rest.channels["torque_n_m"] += effort
+    effects = ("inertia", "gravity", "offset", "coulomb", "viscous", "stribeck")
+    return fit_model(make_dataset([*made, rest], Facts(), Processing(cutoff_hz=8.0)), effects)
+
+
+def test_static_friction_below_the_slowest_sliding_is_not_known_without_starts():
+    friction = 2.0 * COULOMB
+    rise = extrapolated(held_at(friction))
+    assert 0.05 * COULOMB < rise < COULOMB
+    assert not compare_at_rest(held_at(friction + rise)).is_evidence
+    assert compare_at_rest(held_at(friction + 8.0 * rise)).is_evidence
 
 
 def leaning(lean_rad: float) -> Fit:

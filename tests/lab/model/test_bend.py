@@ -9,6 +9,7 @@ from compensator.lab.diagnosis.diagnose import best_named
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model, with_coefficients
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.held_out_error import on_even_terms
 from compensator.lab.model.prediction import beyond_tangent
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import Recording
@@ -92,15 +93,17 @@ def test_where_the_model_is_steep_rows_count_less(alone):
 
 
 def test_a_second_effect_is_found_beside_it(alone, both):
-    steady = alone.dataset.steadiness
-    assert held_out(both, weight=steady).rms < 0.5 * held_out(alone, weight=steady).rms
+    more, less = on_even_terms(held_out(both), held_out(alone))
+    assert more.rms < 0.5 * less.rms
     assert best_named(alone, "sliding") == "position_periodic_friction"
 
 
 def test_weights_go_over_residual_and_effort(both):
-    half = held_out(both).weighted(np.full(int(both.training.sum()), 0.5))
-    assert half.rms == pytest.approx(0.5 * held_out(both).rms)
-    assert half.relative == pytest.approx(held_out(both).relative)
+    whole = replace(held_out(both), doubt=np.zeros(int(both.training.sum())))
+    half, other = on_even_terms(whole, replace(whole, doubt=np.full(len(whole.residual), 3.0)))
+    assert (half.rms, half.relative) == (other.rms, other.relative)
+    assert half.rms == pytest.approx(0.5 * whole.rms)
+    assert half.relative == pytest.approx(whole.relative)
 
 
 def test_where_teeth_that_fly_may_turn_the_sign_rows_count_less():

@@ -85,4 +85,4 @@ def test_a_trial_that_no_other_tells_of_does_not_outweigh_what_they_do_tell():
 def test_a_gain_that_the_errors_beside_it_do_not_have_is_explained(after, unlike):
     words = Gain(0.5, 0.4, 0.6).in_words(0.1, after, 0)
     assert words.startswith("gain 50%, 90 % interval 40% .. 60%")
-    assert ("trials that the others tell nothing of count little in it" in words) == unlike
+    assert ("rows that the others tell nothing of count little in it" in words) == unlike
