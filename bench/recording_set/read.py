@@ -29,10 +29,6 @@ from compensator.lab.recordings.recording import Recording
 
 RIG_FILE = "rig.toml"
 MAPPING_FILE = "mapping.toml"
-_NO_RIG = (
-    "a single file has no rig; name one with --rig rig.toml. For files of another bench "
-    "`friction-bench import --guess` writes it"
-)
 SourceTable = Table | ColumnTable
 
 
@@ -59,11 +55,22 @@ def read_recording_set(
         _check_mapping_is_used(container, mapping, tables)
         recordings = [_read(entry, table, mapping) for entry, table in zip(entries, tables, strict=True)]
         if rig is None:  # only now: nobody is to write one for a file that is no recording
-            raise RecordingSetError(container.path.name, _NO_RIG)
+            raise RecordingSetError(container.path.name, _without_rig(paths[0].parent))
         notes = [f"{table.place}: {table.told}" for table in tables if isinstance(table, Table) and table.told]
     check_recordings(recordings, rig, mapping)
     notes += _without_load(recordings)
     return RecordingSet(name_of_set(paths), rig, recordings, tuple(notes))
+
+
+def _without_rig(folder: Path) -> str:
+    """That a single file has no rig, and where there is one."""
+    beside = folder / RIG_FILE
+    if beside.exists():
+        return f"a single file has no rig; import {folder}, whose set it is of, or name --rig {beside}"
+    return (
+        "a single file has no rig; name one with --rig rig.toml. For files of another bench "
+        "`friction-bench import --guess` writes it"
+    )
 
 
 def _without_load(recordings: Sequence[Recording]) -> list[str]:

@@ -129,3 +129,5 @@ def test_each_step_of_a_study_names_the_next(command, tmp_path):
     again = command("study", "diagnose", 1, "--model", 1).stdout.splitlines()
     assert again[-1] == "next: friction-bench study add 1 viscous_asymmetry --model 1"
     assert command("study", "diagnose", 1).stdout.splitlines()[-1] == "next: docs/how-to/no-name.md says what to do"
+    searched = command("study", "search", 1, "--model", 1).stdout.splitlines()
+    assert searched[-1] == "next: friction-bench study report 1 --html study-1.html"

@@ -164,7 +164,14 @@ def test_a_set_without_tables_is_explained(tmp_path: Path) -> None:
 
 def test_a_single_table_asks_for_a_rig(tmp_path: Path) -> None:
     folder = write_set(tmp_path / "set", {"run.csv": GOOD})
-    with pytest.raises(RecordingSetError, match=r"run.csv: a single file has no rig; name one with --rig"):
+    (folder / "rig.toml").unlink()
+    with pytest.raises(RecordingSetError, match=r"run.csv: a single file has no rig; name one with --rig rig.toml"):
+        read_recording_set(folder / "run.csv")
+
+
+def test_a_single_table_of_a_set_is_told_where_its_rig_is(tmp_path: Path) -> None:
+    folder = write_set(tmp_path / "set", {"run.csv": GOOD})
+    with pytest.raises(RecordingSetError, match=rf"import {folder}, .* or name --rig {folder}/rig.toml"):
         read_recording_set(folder / "run.csv")
 
 

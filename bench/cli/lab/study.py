@@ -15,6 +15,7 @@ from bench.cli.output import Json, print_json, say, table, write_whole
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.store import Store
+    from bench.study.models.change import Searched
     from bench.study.models.diagnosis import Diagnosis
     from bench.study.models.study import Study
 
@@ -214,7 +215,13 @@ def search_command(
     """Add effects one after the other until nothing is missing; each step is a rung of the ladder."""
     from bench.study.diagnosis.search import search
 
-    _show(context, as_json, diagnosis_tables.search, search, study, model, most)
+    session = session_of(context)
+
+    def show(found: "Searched") -> None:
+        diagnosis_tables.search(found)
+        say(session.in_full(diagnosis_tables.after_search(found)))
+
+    _show(context, as_json, show, search, study, model, most)
 
 
 @app.command("suggest")

@@ -47,6 +47,7 @@ def carry_out_all(
         print_json(running.told())
     elif (last := running.rounds[-1].diagnosis) is not None:
         tables.diagnosis(last)
+        say(session.in_full(tables.next_step(last, model_id)))
     if running.signal_code is not None:
         raise typer.Exit(running.signal_code)
     if tried and tried[-1].reason:  # the end of it: what was replaced has others after it
