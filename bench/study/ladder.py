@@ -1,5 +1,7 @@
 """The ladder: error falling from model to model, down towards the repeatability floor."""
 
+from math import isnan
+
 from bench.store import Store
 from bench.store.records import ModelRow
 from bench.study.errors import StudyError
@@ -23,10 +25,13 @@ def ladder(store: Store, study_id: int) -> Ladder:
     if not models:
         raise StudyError(f"study {study_id} has no model; create it again")
     by_id = {model.id: model for model in models}
+    newest = kept_of(models[-1])
+    # a model that lacks much takes some of that for the scatter of repeats
+    alike = [kept for kept in map(kept_of, models) if kept.trials == newest.trials]
     return Ladder(
         study_id=study_id,
         effort=material.effort,
-        floor=kept_of(models[-1]).floor,
+        floor=min(alike, key=lambda kept: (isnan(kept.held_out), kept.held_out)).floor,
         rungs=[_rung(model, by_id.get(model.parent_id or 0)) for model in models],
     )
 

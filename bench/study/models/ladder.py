@@ -53,5 +53,7 @@ class Ladder(StudyModel):
 
     study_id: int
     effort: EffortName
-    floor: float | None = Field(description="relative error that repeated trials set; null without repeats")
+    floor: float | None = Field(
+        description="relative error that repeated trials set, by the model that predicts best; null without repeats"
+    )
     rungs: list[Rung]
