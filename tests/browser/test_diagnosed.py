@@ -42,6 +42,16 @@ def test_a_missing_effect_is_the_one_thing_to_add(diagnosed):
     assert primaries(page) == ["Add Direction-asymmetric viscous friction"]
 
 
+def test_a_diagnosis_is_there_again_when_the_page_is_loaded_anew(diagnosed):
+    page = diagnosed()
+    page.reload()
+    page.locator(".diagnosed .sentence").wait_for()
+    page.goto(page.url.replace("/diagnose", "/compare"))
+    page.reload()
+    page.get_by_role("link", name="3 Diagnose").click()
+    assert page.locator(".diagnosed .sentence").count() == 0, "nobody is kept waiting for what was not asked here"
+
+
 def test_what_is_slight_is_no_candidate_and_the_result_is_next(diagnosed):
     page = diagnosed(slight=True, advice="Next to nothing is left: it would take 3.0% of the held-out error away.")
     page.get_by_text("Next to nothing is left: it would take 3.0 % of").wait_for()

@@ -56,7 +56,7 @@ class Study {
     const known = !wanted || (await get(`${this.path}/ladder`)).rungs.some((one) => one.model_id === wanted);
     await this.select(wanted && known ? wanted : study.model_id);
     if (!known) replace(this.parts.change, h("div", { class: "problem", role: "alert" }, `Study ${this.id} has no model ${wanted}; the newest is shown.`));
-    this.wanted.model = null;
+    this.wanted = {};
   }
 
   async select(model_id) {
@@ -90,15 +90,18 @@ class Study {
 
   askDiagnosis() {
     const { diagnosed, diagnose } = this.parts;
+    const known = `diagnosed ${this.path} ${this.model}`; // in this tab: whoever loads the page anew has it again
     const button = h("button", { class: "primary", type: "button", id: "diagnose-now" }, "Diagnose");
     replace(diagnosed);
     button.addEventListener("click", async () => {
       const found = await patiently(diagnosed, "diagnose", "Testing every effect of the catalogue …", (signal, job) => get(`${this.path}/diagnose`, { model_id: this.model }, { signal, job }), { button });
       await this.comparing; // its plots show where effects act
+      if (found) sessionStorage.setItem(known, "");
       if (found) diagnosis(diagnosed, found, { add: (effect, place) => this.add(effect, place), finish: await this.finish(), path: this.path, linked: this.linked, effort: this.study.effort });
     });
     replace(diagnose, panel("What is missing?", h("p", { class: "soft" }, "Which physical effect does the model lack, how sure is that, and what would adding it bring?"), h("div", { class: "row centre" }, button), diagnosed));
     searchButton(this.parts.search, this.path, () => this.model, (model_id, tell) => this.searched(model_id, tell));
+    if (this.wanted.step === "diagnose" && sessionStorage.getItem(known) !== null) button.click();
   }
 
   // what to press where nothing is left to add: of the joint of a challenge, one is told what was hidden
