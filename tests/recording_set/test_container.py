@@ -42,7 +42,7 @@ def test_files_may_lie_in_folders_of_the_set(tmp_path: Path) -> None:
 
 def test_a_single_table_is_a_set_of_one(tmp_path: Path) -> None:
     folder = write_set(tmp_path / "set", {"run.csv": GOOD, "other.csv": "not,a\ntable"})
-    with pytest.raises(RecordingSetError, match="name one with --rig"):
+    with pytest.raises(RecordingSetError, match="or name --rig"):
         read_recording_set(folder / "run.csv")
     rig = read_recording_set(write_set(tmp_path / "b", {"run.csv": GOOD})).rig
     found = read_recording_set(folder / "run.csv", rig=rig)

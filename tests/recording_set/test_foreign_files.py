@@ -162,3 +162,11 @@ def test_what_was_written_as_a_recording_set_is_read_as_that_and_not_guessed(tmp
     assert list(alone.recordings[0].channels) == list(channels)
     columns = guess_of([tmp_path / "set"], None, Known({}))[0].taken
     assert next(one.why for one in columns if one.column == "event") == "events: they are kept"
+
+
+@pytest.mark.parametrize("name", ["\x0e\x01time" * 3, "q" * 5000])
+def test_a_name_that_damaged_bytes_spell_is_not_repeated_whole(name: str) -> None:
+    with pytest.raises(RecordingSetError, match=r"a\.mat: has a name of \d+ characters .* save it again") as caught:
+        column_table.table_of("a.mat", {name: np.arange(5.0), "t": np.arange(5.0)})
+    assert str(caught.value).isprintable()
+    assert len(str(caught.value)) < 300

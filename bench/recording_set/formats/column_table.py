@@ -13,6 +13,8 @@ Arrays = dict[str, NDArray[np.generic] | list[str]]
 FEWEST_ROWS = 2
 MOST_UNPACKED = 2 * 2**30  # bytes: a small file of these formats can hold any number of zeros
 MOST_COLUMNS = 64  # of an array of two dimensions
+LONGEST_NAME = 100  # characters; MATLAB's own have at most 63, and a structure's are put before them
+SHOWN_OF_NAME = 20
 
 
 @dataclass(frozen=True)
@@ -64,8 +66,9 @@ def table_of(place: str, arrays: Arrays) -> ColumnTable:
         arrays: by name; of one or two dimensions, or single values.
 
     Raises:
-        RecordingSetError: no two arrays have a length in common.
+        RecordingSetError: no two arrays have a length in common, or names that damaged bytes spell.
     """
+    _check_names(place, arrays)
     columns: Columns = {}
     rate_hz = None
     for name, values in arrays.items():
@@ -85,6 +88,17 @@ def table_of(place: str, arrays: Arrays) -> ColumnTable:
     left = [name for name in columns if name not in kept]
     told = f"{len(kept)} columns of {length} rows" + (f"; of other lengths: {', '.join(left)}" if left else "")
     return ColumnTable(place, kept, rate_hz, told)
+
+
+def _check_names(place: str, arrays: Arrays) -> None:
+    for name in arrays:
+        if len(name) > LONGEST_NAME or not name.isprintable():
+            shown = "".join(sign if sign.isprintable() else "?" for sign in name[:SHOWN_OF_NAME])
+            raise RecordingSetError(
+                place,
+                f"has a name of {len(name)} characters that begins with '{shown}'; at most {LONGEST_NAME} are read, "
+                "all printable. The file may be damaged: save it again",
+            )
 
 
 def _listed(arrays: Arrays) -> str:
