@@ -108,8 +108,8 @@ def some_of(names: Sequence[str]) -> str:
 def bursts_in_words(bursts: Bursts, trials: Sequence[str], p_value: float) -> str:
     """The answer where a few stretches leave far more than the others."""
     return (
-        f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left, "
-        f"{bursts.of_effort:.1%} of the effort, comes in bursts: {bursts.stretches} of {bursts.of} stretches of "
+        f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left "
+        f"comes in bursts, {bursts.of_effort:.1%} of the effort: {bursts.stretches} of {bursts.of} stretches of "
         f"{BLOCK_S:g} s scatter up to {bursts.largest:.1f} times as much as the others, in {some_of(trials)}. "
         "Something slips, skips or catches there: look at couplings, clutch and cables, and repeat one of these "
         "trials with less load."

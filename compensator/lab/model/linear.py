@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from compensator.lab.effects.effect import Effect, Shape
-from compensator.lab.recordings.recording import BoolArray, FloatArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 
 DEPENDENT = 1e-4  # share of a column's norm left after projection below which it is no new direction
 
@@ -86,9 +86,24 @@ def _gram_schmidt(columns: FloatArray) -> tuple[BoolArray, FloatArray]:
 
 
 def solve(columns: FloatArray, effort: FloatArray, bounds: Bounds) -> Solution:
-    """Bounded least squares of effort (N,) on columns (N, k), dropping dependent columns in order."""
-    kept = independent(columns)
-    coefficients = np.zeros(columns.shape[1])
+    """Bounded least squares of effort (N,) on columns (N, k), dropping dependent columns in order.
+
+    A column that only its bound holds gives way to one that was dropped for it, where that explains more: of a shaft
+    that only slows down, acceleration, speed and friction say the same, and not every one of them has the right sign.
+    """
+    found = _solve(columns, effort, bounds, np.arange(columns.shape[1]))
+    if found.kept.all() or not found.at_bound.any():
+        return found
+    other = _solve(columns, effort, bounds, np.argsort(found.at_bound, kind="stable"))
+    left, other_left = (float(np.linalg.norm(effort - columns @ one.coefficients)) for one in (found, other))
+    return other if other_left < (1.0 - DEPENDENT) * left else found
+
+
+def _solve(columns: FloatArray, effort: FloatArray, bounds: Bounds, order: IntArray) -> Solution:
+    """Bounded least squares, dropping columns that depend on those before them in an order (k,)."""
+    kept = np.zeros(len(order), dtype=bool)
+    kept[order] = independent(columns[:, order])
+    coefficients = np.zeros(len(order))
     if kept.any():
         used = columns[:, kept]
         coefficients[kept] = solve_normal(used.T @ used, used.T @ effort, bounds.of(kept))

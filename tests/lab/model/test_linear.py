@@ -47,6 +47,20 @@ def test_of_dependent_columns_the_later_is_dropped():
     assert not found.at_bound.any()
 
 
+def test_of_dependent_columns_one_that_its_bound_holds_gives_way():
+    """Of a shaft that only slows down: what its friction brakes, its inertia would have to push."""
+    random = np.random.default_rng(8)
+    speed, other = random.standard_normal((2, 100))
+    columns = np.column_stack([-0.5 * speed, other, speed])
+    bounds = Bounds(np.zeros(3), np.full(3, np.inf))
+    found = solve(columns, 3.0 * speed + other, bounds)
+    assert found.coefficients == pytest.approx([0.0, 1.0, 3.0])
+    assert found.kept.tolist() == [False, True, True]
+    assert not found.at_bound.any()
+    pushed = solve(columns, other - 3.0 * speed, bounds)
+    assert pushed.coefficients == pytest.approx([6.0, 1.0, 0.0])
+
+
 def test_nearly_dependent_columns_are_kept_down_to_the_limit():
     random = np.random.default_rng(6)
     a, b = np.linalg.qr(random.standard_normal((100, 2)))[0].T
