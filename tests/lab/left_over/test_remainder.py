@@ -88,7 +88,7 @@ def test_teeth_that_bounce_are_not_told_as_what_comes_in_bursts(frequency_hz, to
         return 0.05 * here * np.sin(2.0 * np.pi * frequency_hz * x.time_s)
 
     found = diagnose(fitted(burst))
-    assert ("comes in bursts: 4 of 38 stretches" in found.sentence) == told
+    assert ("of the effort: 4 of 38 stretches" in found.sentence) == told
     assert found.remains == told
 
 
