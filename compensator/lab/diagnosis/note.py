@@ -8,6 +8,7 @@ NoteCode = Literal[
     "also-missing",
     "at-rest",
     "differs-by-run",
+    "recurs",
     "structure-remains",
     "swings",
     "too-few-starts",
@@ -18,7 +19,8 @@ NoteCode = Literal[
 also-missing: another family of effects has something missing, too.
 at-rest: the joint at rest contradicts the model.
 differs-by-run: a constant differs from run to run.
-structure-remains: with the effect named, structure over a variable remains.
+recurs: with the effect named, what is left comes back with the position.
+structure-remains: with it, structure over a variable remains.
 swings: with it, what is left swings at one frequency.
 too-few-starts: starts from rest are too few to name anything.
 unexplained-remains: with it, more than noise is left, over no variable that is measured.

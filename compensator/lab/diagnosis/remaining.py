@@ -7,11 +7,13 @@ from compensator.lab.diagnosis.note import Note, Value
 from compensator.lab.effects.free_curve import AGAINST_MOTION, FORCE, TIMES_SPEED, way_of
 from compensator.lab.left_over.bursts import Bursts, bursts_in_words, bursts_of, is_rattle
 from compensator.lab.left_over.left_over import LeftOver, left_over, unexplained_in_words
+from compensator.lab.left_over.orders import Line, recurring_in_words
 from compensator.lab.left_over.remainder import LEAST_SHARE
 from compensator.lab.left_over.swinging import Swing, swinging_in_words
 from compensator.lab.left_over.wandering import Wandering, wandering_in_words
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.weights import row_weights
+from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Screening, screen
@@ -47,6 +49,8 @@ def what_remains(fit: Fit, gathered: Candidates, name: str) -> list[Note]:
     if rest.evidence and rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
         variable, way = way_of(rest.evidence[0].block.name)
         return [_structure_remains(name, DRIVERS[variable].title, way)]
+    if left.line is not None:
+        return [_recurs(name, left.line, fit.dataset.facts)]
     if left.swing is not None:
         return [_swings(name, left.swing)]
     if left.wandering is not None:
@@ -84,6 +88,12 @@ def _structure_remains(name: str, driver: str, way: str) -> Note:
     how = {FORCE: "", AGAINST_MOTION: " against the motion", TIMES_SPEED: " times the speed"}[way]
     text = f"After {name}, structure over {driver}{how} remains; add it and diagnose again."
     return Note("structure-remains", text, {"effect": name, "driver": driver, "against_motion": way == AGAINST_MOTION})
+
+
+def _recurs(name: str, line: Line, facts: Facts) -> Note:
+    """With an effect in the model, what is left comes back with the position."""
+    text = f"After {name}, what is left {recurring_in_words(line, facts)}."
+    return Note("recurs", text, {"effect": name, "order": line.order, "share": line.share})
 
 
 def _swings(name: str, swing: Swing) -> Note:

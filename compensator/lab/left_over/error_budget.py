@@ -45,4 +45,4 @@ PLAIN = ErrorBudget(
 """Of a model that is what every joint has."""
 
 WANDERING_BESIDE_A_NAME = 1e-4
-"""A further formula, though nearly right, leaves some of friction; nothing else is asked for there in small."""
+"""A further formula, though nearly right, leaves some of friction."""

@@ -28,7 +28,7 @@ class LeftOver:
         remainder: how much it is, and whether it follows the motion.
         swing: that it swings at one frequency; None where it does not for sure.
         wandering: that something constant is another one for seconds, however little; None where it is not for sure.
-        line: that it comes back with the position; None where it does not for sure, or where it is not asked for.
+        line: that it comes back with the position; None where it does not for sure, and near reversals.
     """
 
     remainder: Remainder
@@ -57,12 +57,13 @@ def left_over(gathered: Candidates) -> LeftOver:
     swing = swing_of(gathered) if remainder.share > LEAST_SHARE else None
     if not steady:
         return LeftOver(remainder, swing)
+    line = line_of(gathered)
     if not _is_plain(gathered.fit):
         # where the formula was found
-        return LeftOver(remainder, swing, wandering_of(gather_constants(gathered), WANDERING_BESIDE_A_NAME))
+        return LeftOver(remainder, swing, wandering_of(gather_constants(gathered), WANDERING_BESIDE_A_NAME), line)
     in_motion = gather_in_motion(gathered.fit)
     wandering = wandering_of(gather_constants(in_motion), PLAIN.wandering)
-    return LeftOver(remainder, swing or ripple_of(in_motion), wandering, line_of(gathered))
+    return LeftOver(remainder, swing or ripple_of(in_motion), wandering, line)
 
 
 def gather_constants(gathered: Candidates) -> Constants:
@@ -78,7 +79,7 @@ def gather_in_motion(fit: Fit) -> Candidates:
 
 
 def _is_plain(fit: Fit) -> bool:
-    """Whether a model is what every joint has: a further formula that is nearly right leaves lines and curves, too."""
+    """Whether a model is what every joint has: a further formula that is nearly right leaves some of friction."""
     plain = default_effects(fit.dataset.facts)
     return all(effect.name in plain or effect.pipeline for effect in fit.effects)
 
