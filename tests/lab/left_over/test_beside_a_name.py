@@ -1,0 +1,23 @@
+"""Beside a formula that is named, too, it is asked whether what is left comes back with the position."""
+
+import numpy as np
+
+from compensator.lab.diagnosis.remaining import what_remains
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.left_over.left_over import left_over
+from compensator.lab.model.fit import fit_model
+from compensator.lab.model.order_search import FRICTION
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.gathering import gather
+from tests.lab.synthetic import FACTS, Joint, recordings
+
+
+def test_friction_that_goes_round_is_told_beside_a_spring():
+    joint = Joint(extra=lambda x: 0.004 * np.cos(6.0 * x.q) * np.sign(x.v))
+    dataset = make_dataset(recordings(joint, seed=3), FACTS, Processing(cutoff_hz=8.0))
+    fit = fit_model(dataset, [*default_effects(FACTS), "spring"])
+    line = left_over(gather(fit)).line
+    assert line is not None
+    assert (line.kind, round(line.order)) == (FRICTION, 6)
+    assert {note.code for note in what_remains(fit, gather(fit), "spring")} & {"recurs", "structure-remains"}
