@@ -6,6 +6,7 @@ Nothing of the lab's closed forms is used: contact is a spring and a damper, fri
 from math import sin, tanh
 
 import numpy as np
+from numba import njit
 
 from tests.lab.synthetic import Array, Joint, Truth
 
@@ -20,17 +21,29 @@ def missing_torque(x: Truth, stiffness_n_m_rad: float, damping_n_m_s_rad: float,
     step_s = float(x.time_s[1] - x.time_s[0]) / STEPS
     inertia, moment = ARM_KG_M2 + x.load_kg * x.arm_m**2, Joint().arm_moment + x.weight_n_m
     fine_s = np.linspace(x.time_s[0], x.time_s[-1], (len(x.time_s) - 1) * STEPS + 1)
-    ahead = np.interp(fine_s, x.time_s, x.q).tolist()  # good to 1e-5 rad at these speeds
-    speeds = np.interp(fine_s, x.time_s, x.v).tolist()
-    q, v, half, carried = ahead[0], speeds[0], 0.5 * gap_rad, []
-    for motor_q, motor_v in zip(ahead, speeds, strict=True):
-        twist = motor_q - q
+    ahead, speeds = np.interp(fine_s, x.time_s, x.q), np.interp(fine_s, x.time_s, x.v)  # good to 1e-5 rad
+    gear = (stiffness_n_m_rad, damping_n_m_s_rad, 0.5 * gap_rad)
+    carried: Array = _carried(ahead, speeds, gear, inertia, moment, step_s)
+    return carried[::STEPS] - inertia * x.a - moment * np.sin(x.q)
+
+
+@njit(cache=True)
+def _carried(
+    ahead: Array, speeds: Array, gear: tuple[float, float, float], inertia: float, moment: float, step_s: float
+) -> Array:
+    """What a gear of a stiffness, a damping and half a gap carries, step by step."""
+    stiffness, damping, half = gear
+    q, v, carried = ahead[0], speeds[0], np.empty(len(ahead))
+    for index in range(len(ahead)):
+        twist = ahead[index] - q
         pressed = twist - half if twist > half else twist + half if twist < -half else 0.0
-        torque = stiffness_n_m_rad * pressed + (damping_n_m_s_rad * (motor_v - v) if pressed or not half else 0.0)
-        carried.append(torque)
+        torque = stiffness * pressed
+        if pressed != 0.0 or half == 0.0:
+            torque += damping * (speeds[index] - v)
+        carried[index] = torque
         v += step_s * (torque - moment * sin(q) - FRICTION_N_M * tanh(v / 0.01)) / inertia
         q += step_s * v
-    return np.array(carried[::STEPS]) - inertia * x.a - moment * np.sin(x.q)
+    return carried
 
 
 def loose_teeth(x: Truth) -> Array:

@@ -8,7 +8,7 @@ from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Effect
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.drivers import DRIVERS
-from compensator.lab.rows.picture import SIGMAS, BinnedMean, binned_mean
+from compensator.lab.rows.picture import SIGMAS, BinnedMean, binned_mean, bins_of
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence
 
@@ -47,8 +47,8 @@ def _partial_residual(gathered: Candidates, item: Evidence) -> tuple[FloatArray,
 
 def _spread(driver: FloatArray, values: FloatArray) -> float:
     """Power of the binned means: how much of the values the driver explains."""
-    means = binned_mean(driver, values, np.arange(len(values)))
-    return float(np.sum(means.count * means.mean**2))
+    label = bins_of(driver)
+    return float(np.sum(np.bincount(label, values) ** 2 / np.maximum(np.bincount(label), 1)))
 
 
 MOST_GROUPS = 8

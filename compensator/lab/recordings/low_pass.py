@@ -124,9 +124,12 @@ def _put_with_odd_extension(
         top = len(into) - lengths[block] - count
         # some samples of all columns at a time: what is read and what is written both stay near
         for first in range(0, last + 1, TURNED_AT_ONCE):
+            some = min(TURNED_AT_ONCE, last + 1 - first)
+            turned = into[top + first : top + first + some, left : left + width]
             for column in range(width):
-                for row in range(first, min(first + TURNED_AT_ONCE, last + 1)):
-                    into[top + row, left + column] = whole[used[column], start + row]
+                given = whole[used[column], start + first : start + first + some]
+                for row in range(some):  # of views, whose indices are not looked at for being negative
+                    turned[row, column] = given[row]
         for away in range(1, count + 1):
             for column in range(width):
                 own = used[column]

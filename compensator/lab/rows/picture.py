@@ -37,27 +37,28 @@ def binned_mean(driver: FloatArray, values: FloatArray, stretch: IntArray) -> Bi
         values: what is averaged, shape (n,).
         stretch: independent stretch of each row, shape (n,).
     """
+    label = bins_of(driver)
+    count = np.bincount(label)
+    rows = np.maximum(count, 1)
+    x, mean = np.bincount(label, driver) / rows, np.bincount(label, values) / rows
+    half = SIGMAS * _standard_errors(label, values - mean[label], stretch, rows)
+    shown = count >= FEWEST_PER_BIN
+    return BinnedMean(x[shown], mean[shown], (mean - half)[shown], (mean + half)[shown], count[shown])
+
+
+def bins_of(driver: FloatArray) -> IntArray:
+    """Which bin each row is in, by quantiles of the driver, shape (n,)."""
     edges = np.unique(np.quantile(driver, np.linspace(0.0, 1.0, BINS + 1)))
-    label = np.clip(np.searchsorted(edges, driver, side="right") - 1, 0, max(len(edges) - 2, 0))
-    rows = []
-    for index in np.unique(label):
-        inside = label == index
-        count = int(inside.sum())
-        if count < FEWEST_PER_BIN:
-            continue
-        mean = float(values[inside].mean())
-        half = SIGMAS * _standard_error(values[inside] - mean, stretch[inside])
-        rows.append((float(driver[inside].mean()), mean, mean - half, mean + half, count))
-    table = np.array(rows, dtype=float).reshape(-1, 5)
-    return BinnedMean(table[:, 0], table[:, 1], table[:, 2], table[:, 3], table[:, 4].astype(np.int64))
+    return np.clip(np.searchsorted(edges, driver, side="right") - 1, 0, max(len(edges) - 2, 0))
 
 
-def _standard_error(centred: FloatArray, stretch: IntArray) -> float:
-    """Of a mean over clustered rows: the clusters' sums are independent, the rows are not."""
-    _, dense = np.unique(stretch, return_inverse=True)
-    sums = np.bincount(dense, weights=centred)
-    clusters = len(sums)
-    inflation = clusters / (clusters - 1.0) if clusters > 1 else 1.0
-    between = float(np.sqrt(inflation * np.sum(sums**2))) / len(centred)
-    within = float(np.std(centred)) / np.sqrt(len(centred))
-    return float(max(between, within))
+def _standard_errors(label: IntArray, centred: FloatArray, stretch: IntArray, rows: IntArray) -> FloatArray:
+    """Of each bin's mean over clustered rows: the clusters' sums are independent, the rows are not; shape (bins,)."""
+    _, own = np.unique(stretch, return_inverse=True)
+    stretches = int(own.max()) + 1
+    clusters, own = np.unique(label * stretches + own, return_inverse=True)
+    bins = clusters // stretches
+    count = np.bincount(bins, minlength=len(rows))
+    powers = np.bincount(bins, np.bincount(own, centred) ** 2, len(rows))
+    between: FloatArray = np.sqrt(powers * count / np.maximum(count - 1, 1)) / rows
+    return np.maximum(between, np.sqrt(np.bincount(label, centred**2)) / rows)
