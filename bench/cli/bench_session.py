@@ -16,7 +16,8 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.config.configuration import BenchConfiguration
     from bench.store import Store
 
-_OF_A_BENCH = re.compile(r"friction-bench (?=doctor|drive |study )")  # commands that are about one bench, in a message
+# commands that are about one bench, or about its store, in a message
+_OF_A_BENCH = re.compile(r"friction-bench (?=(?:calibrate|doctor|drive|import|run|store|study|token)\b)")
 
 
 @dataclass(frozen=True)

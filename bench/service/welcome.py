@@ -1,5 +1,6 @@
 """What is printed when the service starts."""
 
+import shlex
 from typing import NamedTuple
 
 from bench.config.configuration import BenchConfiguration
@@ -44,6 +45,7 @@ def _token(configuration: BenchConfiguration, tokens: Tokens) -> str:
     if tokens.made is not None:
         return f"{tokens.made}   (the page asks for it; keep it to yourself: it is shown this once)"
     if tokens.chosen is None:
-        return "was shown at the first start; another one: friction-bench token new NAME --role admin"
+        store = shlex.quote(shown(configuration.store.url))
+        return f"was shown at the first start; another one: friction-bench --store {store} token new NAME --role admin"
     name, _ = tokens.chosen
     return f"that of {TOKEN_VARIABLE if name == ENVIRONMENT else token_file(configuration.store.url)}"

@@ -22,6 +22,11 @@ def test_a_command_about_the_drive_names_its_bench(session, said):
     assert session.in_full("run 'friction-bench doctor --move'") == said
 
 
+def test_a_command_about_the_store_names_it():
+    said = "friction-bench --store s token new me, then friction-bench --store s calibrate run"
+    assert BenchSession(store="s").in_full("friction-bench token new me, then friction-bench calibrate run") == said
+
+
 def test_other_commands_stay_as_they_are():
     said = "'friction-bench drives scan' and 'friction-bench serve'"
     assert BenchSession(Path("b.toml")).in_full(said) == said

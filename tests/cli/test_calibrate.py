@@ -1,8 +1,12 @@
 """`friction-bench calibrate`."""
 
 import json
+from dataclasses import replace
 
 import pytest
+
+from bench.cli.operation import calibration_run
+from bench.cli.operation.run import carry_out
 
 pytestmark = pytest.mark.timeout(300)  # seconds by itself; a shared machine may take minutes
 LEVELS = ("--loads-kg", "0,0.1", "--duties", "0.2", "--minutes", "0.5")
@@ -49,10 +53,25 @@ def test_it_says_before_what_it_takes_and_goes_on_where_it_was_broken_off(comman
     assert json.loads(again.stdout)["experiment_ids"] == [1, 2, 4]
 
 
-def test_a_calibration_that_is_broken_off_says_how_to_go_on(command):
+def test_a_duty_above_the_limit_is_refused_before_the_first_stroke(command):
     refused = command("calibrate", "run", "--loads-kg", "0,0.1", "--minutes", "0.5", "--duties", "0.9")
-    assert refused.exit_code == 3  # refused before the first stroke: the duty is above the limit
+    assert refused.exit_code == 3
     assert json.loads(command("calibrate", "list", "--json").stdout) == []
+
+
+def test_a_calibration_that_is_broken_off_says_the_whole_command_that_goes_on(command, monkeypatch):
+    done = []
+
+    def stopped_at_the_second(*given, **named):
+        found, _ = carry_out(*given, **named)
+        done.append(found.id)
+        return (found, None) if len(done) == 1 else (replace(found, outcome="stopped", reason="somebody asked"), None)
+
+    monkeypatch.setattr(calibration_run, "carry_out", stopped_at_the_second)
+    told = command("calibrate", "run", *LEVELS, "--pace", "fast")
+    assert told.exit_code == 1
+    options = "--loads-kg 0,0.1 --minutes 0.5 --duties 0.2 --pace fast"
+    assert f"friction-bench calibrate run {options} --after {done[0]}" in " ".join(told.output.split())
 
 
 def test_loads_on_one_side_alone_are_said_with_the_result(command):

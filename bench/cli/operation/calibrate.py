@@ -1,5 +1,7 @@
 """`friction-bench calibrate ...`: friction curves of the joint: measured, fitted, kept, shown, chosen."""
 
+import shlex
+from enum import Enum
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -56,7 +58,8 @@ def run(
     session, loads = session_of(context), tuple(_numbers(loads_kg))
     wish = Wish(loads, 1e-3 * accuracy_ma, 60.0 * minutes, tuple(_numbers(duties)))
     with session.open_store() as store:
-        ids = CalibrationRun(session, store, wish, after or [], pace, note, as_json).carry_out()
+        again = _given(context, {"after", "as_json"})
+        ids = CalibrationRun(session, store, wish, after or [], pace, note, again, as_json).carry_out()
     _fit_and_show(session, ids, True, note, as_json)
 
 
@@ -116,6 +119,16 @@ def use(
         calibrations.use(store, session.configuration(), calibration)
         used = calibrations.in_use(store, session.configuration())
     say("No calibration fits this bench." if used is None else f"In use: calibration {used.id}.")
+
+
+def _given(context: typer.Context, without: set[str]) -> str:
+    """The options that a command was given, but for some, as they are typed."""
+    words = []
+    for one in context.command.params:
+        value = context.params.get(one.name or "")
+        if one.name not in without and value not in (None, one.default):
+            words += [one.opts[0], shlex.quote(str(value.value if isinstance(value, Enum) else value))]
+    return "".join(f" {word}" for word in words)
 
 
 def _fit_and_show(session: BenchSession, experiment_ids: list[int], stribeck: bool, note: str, as_json: bool) -> None:

@@ -24,6 +24,7 @@ class CalibrationRun:
         wish: what was asked for.
         before: records of a calibration that was broken off, which count along.
         pace, note: of each experiment.
+        again: the options that were given, to go on with.
         quiet: say nothing.
     """
 
@@ -35,11 +36,12 @@ class CalibrationRun:
         before: list[int],
         pace: Pace | None,
         note: str,
+        again: str,
         quiet: bool,
     ) -> None:
         from bench.runs.sequential_calibration import SequentialCalibration
 
-        self._session, self._pace, self._note, self._quiet = session, pace, note, quiet
+        self._session, self._pace, self._note, self._again, self._quiet = session, pace, note, again, quiet
         bench = session.configuration()
         self._calibration = SequentialCalibration(bench, store, wish, self._run, self._announce, before)
 
@@ -61,9 +63,9 @@ class CalibrationRun:
             self._session, kind, parameters, "", self._note, self._pace, quiet=self._quiet, hung=hung
         )
         if found.outcome != "completed":
-            after = " ".join(f"--after {one}" for one in self._calibration.ids)
-            go_on = f" Go on with 'calibrate run {after}'" if after else ""
-            reason = self._session.in_full(found.reason)
-            say(f"experiment {found.id} ({kind}): {found.outcome}: {reason}. Nothing was calibrated.{go_on}")
+            after = "".join(f" --after {one}" for one in self._calibration.ids)
+            go_on = f" Go on with: friction-bench calibrate run{self._again}{after}" if after else ""
+            message = f"experiment {found.id} ({kind}): {found.outcome}: {found.reason}. Nothing was calibrated.{go_on}"
+            say(self._session.in_full(message))
             raise typer.Exit(signal_code or ExitCode.NOT_COMPLETED)
         return found

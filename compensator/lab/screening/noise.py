@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import next_fast_len
-from scipy.stats import f as fisher
+from scipy.special import fdtrc, fdtri
 
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import BLOCK_S, FEWEST_ROWS, Dataset
@@ -213,7 +213,7 @@ class Noise:
 
     def chance(self, strength_found: float, rank: int) -> float:
         """The chance that noise alone is as strong in one block of that rank (Snedecor's F: the noise is learnt)."""
-        return float(fisher.sf(strength_found / rank, rank, self.known_from))
+        return float(fdtrc(rank, self.known_from, strength_found / rank))
 
     def joint_chances(self, covariance: FloatArray, blocks: Sequence[slice], seed: int = 0) -> Callable[[float], float]:
         """How likely noise alone brings any of the blocks' own chances down to a given one.
@@ -237,7 +237,7 @@ class Noise:
 
         def chance(own: float) -> float:
             reached = [
-                found >= rank * float(fisher.isf(own, rank, self.known_from)) * (1.0 - 1e-9)
+                found >= rank * float(fdtri(rank, self.known_from, 1.0 - own)) * (1.0 - 1e-9)
                 for rank, found in strongest.items()
             ]
             return (1.0 + float(np.any(reached, axis=0).sum())) / (1.0 + DRAWS)

@@ -5,6 +5,7 @@ import time
 
 import numpy as np
 import pytest
+from scipy.integrate import cumulative_trapezoid
 
 from bench.errors import ConfigurationError
 from bench.runs.follow import follower_of, record
@@ -65,8 +66,9 @@ def test_what_another_master_drives_is_recorded_and_nothing_is_sent(tmp_path, mo
     found = recording.channels
     assert len(recording) > 30
     assert np.ptp(found["position_rad"]) > 0.05
-    moved = np.gradient(found["position_rad"], found["time_s"])
-    assert np.corrcoef(moved, found["velocity_rad_s"])[0, 1] > 0.8
+    # a rate would show how unevenly a busy machine takes the time of the frames
+    way = cumulative_trapezoid(found["velocity_rad_s"], found["time_s"], initial=0.0)
+    assert np.corrcoef(way, found["position_rad"])[0, 1] > 0.9
     assert np.ptp(found["current_a"]) > 0.1
 
 
