@@ -1,4 +1,4 @@
-# Needs Python 3.11, make and a C library. Everything else arrives in .venv.
+# Needs Linux with glibc, Python 3.11 and make. Everything else arrives in .venv.
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
 VM_KERNEL ?= out/vm/kernel

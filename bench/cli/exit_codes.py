@@ -31,7 +31,7 @@ Exit codes: 0 done; 1 the experiment did not complete (failed, tripped, stopped 
 a fault; 5 the service cannot be reached or refuses the token; 130 ended by Ctrl-C; 143 ended by SIGTERM.
 
 Environment: FRICTION_BENCH_CONFIG (as --config), FRICTION_BENCH_STORE (as --store), FRICTION_BENCH_LOG (as --log), \
-FRICTION_BENCH_URL (service for `status` and `stop`), FRICTION_BENCH_TOKEN (token of the service).
+FRICTION_BENCH_URL (service for `status`, `stop` and `queue`), FRICTION_BENCH_TOKEN (token of the service).
 """
 
 
