@@ -46,7 +46,7 @@ def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int
     named = set(found.classes[0]) if found.verdict == "missing" and found.classes else set()
     not_told = [not_judged(effect, reason) for effect, reason in found.left_out.items()]
     advice = _advice(found, explained)
-    curve = provisional(fit, found) if found.verdict == "unknown-effect" else None
+    curve = provisional(fit, found)
     return Diagnosis(
         study_id=study_id,
         model_id=model_id,

@@ -13,12 +13,11 @@ from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
 from compensator.lab.at_rest.breakaway_regression import BreakawayFit, fit_breakaway
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.rests import Windows, extrapolated, limits_of, windows_of
-from compensator.lab.chance import chance_in_words
+from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import relative_error, rms
 from compensator.lab.recordings.recording import FloatArray
 
-SIGNIFICANT = 0.01
 FEWEST_WINDOWS = 5
 MOSTLY = 0.1  # more stretches beyond friction than that, though it is no evidence: the model itself is too uncertain
 

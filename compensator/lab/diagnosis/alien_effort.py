@@ -47,7 +47,7 @@ def alien_effort(fit: Fit) -> AlienEffort | None:
 def _turned(fit: Fit) -> AlienEffort | None:
     """Effort and motion of opposite signs: inertia and friction would be negative, and turned they explain more."""
     held = _held_at_zero(fit)
-    if "inertia" not in held or len(held) < 2:
+    if not held:
         return None
     columns, effort = fit.training_equations
     error = relative_error(effort - columns @ fit.coefficients, effort)
@@ -64,12 +64,13 @@ def _turned(fit: Fit) -> AlienEffort | None:
 
 
 def _held_at_zero(fit: Fit) -> list[str]:
-    """Inertia and friction that only their bound keeps from being negative."""
-    return [
+    """Inertia and friction that only their bound keeps from being negative; none where it is not both."""
+    held = [
         term.effect.name
         for term in fit.terms
         if term.effect.name in DISSIPATIVE and term.kept[0] and term.at_bound[0] and term.coefficients[0] <= 0.0
     ]
+    return held if "inertia" in held and len(held) > 1 else []
 
 
 def _unexplained(fit: Fit) -> AlienEffort | None:
@@ -82,7 +83,7 @@ def _unexplained(fit: Fit) -> AlienEffort | None:
         )
         return AlienEffort(text, EXPLAINED * error, mended=False)
     held = _held_at_zero(fit)
-    if error < POOR or "inertia" not in held or len(held) < 2:
+    if error < POOR or not held:
         return None
     text = (
         f"{' and '.join(held)} would be negative, and {error:.0%} of the effort is left: effort and motion have "
@@ -118,5 +119,5 @@ def _late(fit: Fit) -> AlienEffort | None:
 
 def _error_of(fit: Fit, effort: np.ndarray) -> float:
     """What the model's columns leave of another effort (n,), weighted as the training rows are, as a share of it."""
-    columns = fit.weight[fit.training][:, None] * fit.columns[fit.training]
+    columns, _ = fit.training_equations
     return relative_error(effort - columns @ solve(columns, effort, fit.bounds).coefficients, effort)

@@ -18,11 +18,11 @@ from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
 from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
-from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL
+from compensator.lab.diagnosis.examination import best_shapes, detectability, explains
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.diagnosis.pictures import picture_of_breakaway
 from compensator.lab.diagnosis.wording import named_in_words
-from compensator.lab.effects.catalogue import candidates
+from compensator.lab.effects.catalogue import candidates, effect_named
 from compensator.lab.effects.effect import Effect
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fit import fit_effects
@@ -68,15 +68,14 @@ def breakaway_answer(
     too_few = few_starts(fit, rows)
     if rows is None or too_few is not None:
         return None, too_few or {}
-    wanted = [effect for effect, _ in shares_of(candidates(fit.names, fit.dataset.facts))]
     base = fit_breakaway(rows, fit.effects)
-    blocks, bases, left_out = breakaway_blocks(base, wanted)
+    blocks, bases, left_out = breakaway_blocks(base, candidates(fit.names, fit.dataset.facts))
     unit = rows.unit[rows.training]
     lag = base.coefficients_of(LAG)
     late = lag is not None and bool(lag[0] > 0.0)  # no start is seen before it happens
     screening = screen_events(bases, blocks, unit, model=WITH_LAG if late else WITHOUT_LAG)
     evidence = screening.evidence if late else _over_one_model(base, bases, screening.evidence)
-    judged = _judge(base, evidence, {effect.name: effect for effect in wanted})
+    judged = _judge(base, evidence)
     if not judged:
         return Answer("nothing", "", 1.0, [], None, []), left_out
     before = held_out_breakaway(base)
@@ -160,15 +159,12 @@ def _over_one_model(base: BreakawayFit, bases: list[Base], evidence: list[Eviden
     return sorted(found, key=lambda item: -item.score)
 
 
-def _judge(base: BreakawayFit, evidence: list[Evidence], known: dict[str, Effect]) -> list[_Judged]:
+def _judge(base: BreakawayFit, evidence: list[Evidence]) -> list[_Judged]:
     """The best shape of every effect, best effect first, refitted."""
-    found: dict[str, Evidence] = {}
-    for item in evidence:
-        found.setdefault(item.block.name, item)
     shapes = {share.name: share.shape for share in base.shares}
     judged = []
-    for item in list(found.values())[:EXAMINED]:
-        effect = known[item.block.name]
+    for item in best_shapes(evidence)[:EXAMINED]:
+        effect = effect_named(item.block.name)
         fit = fit_breakaway(base.rows, [*base.rows.fit.effects, effect], {**shapes, effect.name: item.block.shape})
         judged.append(_Judged(effect, item, held_out_breakaway(fit, base.weight), fit))
     return judged
@@ -181,9 +177,7 @@ def _candidate(
     rivals = {
         other.effect.name: abs(float(one.item.direction @ other.item.direction))
         for other in judged
-        if other is not one
-        and left.get(other.effect.name, 0.0) < EXPLAINED_BY_RIVAL * other.item.noncentrality
-        and not predicts_better(one.after, other.after)
+        if other is not one and explains(left, other.item) and not predicts_better(one.after, other.after)
     }
     nearest = max(rivals.values(), default=0.0)
     coefficients = one.fit.coefficients_of(one.effect.name)
@@ -192,7 +186,7 @@ def _candidate(
         shape=one.item.block.shape,
         score=one.item.score,
         p_value=one.item.p_value,
-        detectability=float(np.sqrt(one.item.noncentrality * max(0.0, 1.0 - nearest**2))),
+        detectability=detectability(one.item, nearest),
         rivals=tuple(sorted(rivals)),
         before=before.relative,
         after=one.after.relative,

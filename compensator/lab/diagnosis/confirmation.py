@@ -59,7 +59,7 @@ def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:
         explained: by effects that were added to the first model, root mean square as a share of the effort, held
             out; with 0 nothing is slight.
     """
-    if diagnosis.verdict != "missing" or not diagnosis.classes:
+    if diagnosis.verdict != "missing":
         return None
     one = next((each for each in diagnosis.candidates if each.effect.name == diagnosis.classes[0][0]), None)
     if one is None or one.gain.high >= SLIGHT_GAIN:

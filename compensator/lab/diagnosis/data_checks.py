@@ -60,7 +60,8 @@ def _mirrored_trials(fit: Fit) -> list[str]:
         predicted = columns[rows] @ without
         as_is, turned = (rms(sign * effort[rows] - predicted) for sign in (1.0, -1.0))
         if int(rows.sum()) >= FEWEST_ROWS and turned < MIRRORED * as_is:
-            if as_is < UNLIKE * _median_error(dataset, effort - columns @ without, dataset.counted & ~rows):
+            others = _errors(dataset, effort - columns @ without, dataset.counted & ~rows)
+            if others and as_is < UNLIKE * float(np.median(list(others.values()))):
                 continue
             nothing = np.zeros_like(whole[0])
             with_turned = solve_without(whole, (nothing, 2.0 * own.T @ own_effort), bounds)
@@ -73,10 +74,13 @@ def _mirrored_trials(fit: Fit) -> list[str]:
     return found
 
 
-def _median_error(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> float:
-    """What the median trial leaves of some rows, root mean square; 0 where there is none."""
-    errors = [rms(residual[rows & (dataset.trial_index == index)]) for index in np.unique(dataset.trial_index[rows])]
-    return float(np.median(errors)) if errors else 0.0
+def _errors(dataset: Dataset, residual: FloatArray, rows: BoolArray, fewest: int = 1) -> dict[int, float]:
+    """What each trial that has so many of some rows (N,) leaves of them, root mean square, by its index."""
+    return {
+        int(index): rms(residual[own])
+        for index in np.unique(dataset.trial_index[rows])
+        if int((own := rows & (dataset.trial_index == index)).sum()) >= fewest
+    }
 
 
 def _load_units(fit: Fit) -> list[str]:
@@ -120,12 +124,8 @@ def _ordered_conditions(fit: Fit) -> list[str]:
 
 
 def _odd_trials(fit: Fit) -> list[str]:
-    dataset, residual, found = fit.dataset, fit.residual, []
-    errors = {}
-    for index in np.unique(dataset.trial_index[fit.training]):
-        rows = fit.training & (dataset.trial_index == index)
-        if int(rows.sum()) >= FEWEST_ROWS_OF_ODD:
-            errors[int(index)] = rms(residual[rows])
+    dataset, found = fit.dataset, []
+    errors = _errors(dataset, fit.residual, fit.training, FEWEST_ROWS_OF_ODD)
     if len(errors) < FEWEST_TRIALS_TO_COMPARE:
         return []
     median = float(np.median(list(errors.values())))

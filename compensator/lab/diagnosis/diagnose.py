@@ -9,9 +9,9 @@ from collections.abc import Collection
 from math import nan
 
 from compensator.lab import progress
-from compensator.lab.at_rest.rest_comparison import RestComparison, at_rest_in_words, compare_at_rest
+from compensator.lab.at_rest.rest_comparison import at_rest_in_words, compare_at_rest
 from compensator.lab.chance import SIGNIFICANT
-from compensator.lab.diagnosis.alien_effort import AlienEffort, alien_effort
+from compensator.lab.diagnosis.alien_effort import alien_effort
 from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems, lesser_problems
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
@@ -19,7 +19,6 @@ from compensator.lab.diagnosis.four_families import LEFT, STAGES, judged
 from compensator.lab.diagnosis.note import Note, Value
 from compensator.lab.diagnosis.remaining import what_remains
 from compensator.lab.diagnosis.run_to_run import ByRun, by_run_in_words, differences_by_run
-from compensator.lab.diagnosis.wording import problem_in_words
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
@@ -27,11 +26,11 @@ from compensator.lab.left_over.orders import with_found_order
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
-from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import least_p_value, screen
 from compensator.lab.screening.gathering import gather
 
 
+@progress.stages(STAGES)
 def diagnose(fit: Fit) -> Diagnosis:
     """Diagnose a fitted model on its training rows.
 
@@ -44,11 +43,6 @@ def diagnose(fit: Fit) -> Diagnosis:
     Raises:
         UnusableDataError: no candidate can be judged on these trials.
     """
-    with progress.stages(STAGES):
-        return _diagnosed(fit)
-
-
-def _diagnosed(fit: Fit) -> Diagnosis:
     if problems := fatal_problems(fit):
         return _data_problem(fit, problems[0])
     alien = alien_effort(fit)
@@ -60,13 +54,13 @@ def _diagnosed(fit: Fit) -> Diagnosis:
         return _data_problem(fit, alien.text)
     progress.enter(LEFT)
     first = families.first()
-    nothing = first.verdict == "nothing"
-    too_short = nothing and least_p_value(families.stretches) > SIGNIFICANT
-    explained = alien is not None and _explains_more(first, alien)
+    too_short = first.verdict == "nothing" and least_p_value(families.gathered.stretches) > SIGNIFICANT
+    # an effect that leaves less than mending the data would makes more sense of an effort that seems alien
+    explained = alien is not None and first.verdict == "missing" and first.candidates[0].after <= alien.leaves
     if alien is not None and not explained and (alien.mended or not too_short):
         return _data_problem(fit, alien.text)
     others = [answer for answer in families.in_order if answer is not first]
-    left = _left_in_sliding(fit, families.gathered, first) if first is families.memory else []
+    left = _left_in_sliding(fit, first) if first is families.memory else []
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
     notes = [*first.notes, *left, *(_also_missing(answer) for answer in others if answer.verdict == "missing")]
     notes += [note for answer in others if answer is families.rest for note in answer.notes]
@@ -81,7 +75,7 @@ def _diagnosed(fit: Fit) -> Diagnosis:
         notes=[*notes, *_at_rest(fit), *_by_run(first.explained or fit)],
         left_out=families.left_out,
         too_short=too_short,
-        remains=first.remains or bool(left) or (nothing and families.steady.remains),
+        remains=first.remains or bool(left),
     )
 
 
@@ -99,23 +93,17 @@ def _hidden_rivals(first: Answer, fit: Fit, left_out: Collection[str]) -> str:
     if first.verdict != "missing":
         return ""
     name = first.candidates[0].effect.name
-    hidden = [one for one in map(effect_named, left_out) if name in one.confused_with]
-    scales = {one.name: [scale for scale in one.hidden_by if scale in fit.names] for one in hidden}
     return "".join(
-        f" It may as well be {one.title.lower()}, which the free scale of {' and '.join(scales[one.name])} hides."
-        for one in hidden
-        if scales[one.name]
+        f" It may as well be {one.title.lower()}, which the free scale of {' and '.join(scales)} hides."
+        for one in map(effect_named, left_out)
+        if name in one.confused_with and (scales := [scale for scale in one.hidden_by if scale in fit.names])
     )
-
-
-def _explains_more(answer: Answer, alien: AlienEffort) -> bool:
-    """Whether an effect is named that makes more sense of an effort that seems alien to the motion than a mend does."""
-    return answer.verdict == "missing" and answer.candidates[0].after <= alien.leaves
 
 
 def _data_problem(fit: Fit, problem: str) -> Diagnosis:
     """The answer where the data are wrong: nothing is ranked."""
-    return Diagnosis("data-problem", problem_in_words(problem), nan, [], [], data_problems=data_problems(fit))
+    sentence = f"The data have a problem that no effect could be told from: {problem}."
+    return Diagnosis("data-problem", sentence, nan, [], [], data_problems=data_problems(fit))
 
 
 def _also_missing(answer: Answer) -> Note:
@@ -126,10 +114,11 @@ def _also_missing(answer: Answer) -> Note:
 
 def _at_rest(fit: Fit) -> list[Note]:
     """What rests say against the model, which sliding cannot say."""
-    found = compare_at_rest(fit)
+    found, unit = compare_at_rest(fit), fit.dataset.effort_definition.unit
     if found is None or not found.is_evidence:
         return []
-    return [_says_at_rest(found, fit.dataset.effort_definition.unit)]
+    values: dict[str, Value] = {"stretches": found.windows, "outside": found.outside, "largest": found.largest}
+    return [Note("at-rest", at_rest_in_words(found, unit), {**values, "unit": unit})]
 
 
 def _by_run(fit: Fit) -> list[Note]:
@@ -138,13 +127,12 @@ def _by_run(fit: Fit) -> list[Note]:
     return [_differs_by_run(one, unit) for one in differences_by_run(fit, held_out(fit))]
 
 
-def _left_in_sliding(fit: Fit, gathered: Candidates, memory: Answer) -> list[Note]:
+def _left_in_sliding(fit: Fit, memory: Answer) -> list[Note]:
     """What an effect with memory that is named leaves in steady sliding: near reversals not all of it is asked for."""
-    if memory.verdict != "missing" or memory.remains or memory.explained is None:
+    if memory.verdict != "missing" or memory.remains:
         return []
     name = memory.candidates[0].effect.name
-    explained = fit_effects(fit, [*fit.names, name])
-    return what_remains(explained, gathered, name)
+    return what_remains(fit_effects(fit, [*fit.names, name]), "sliding", name)
 
 
 def _once(candidates: list[Candidate]) -> list[Candidate]:
@@ -166,17 +154,6 @@ def _classes(candidates: list[Candidate]) -> list[tuple[str, ...]]:
         placed.update(members)
         classes.append(tuple(members))
     return classes
-
-
-def _says_at_rest(found: RestComparison, unit: str) -> Note:
-    """What rests say against the model."""
-    values: dict[str, Value] = {
-        "stretches": found.windows,
-        "outside": found.outside,
-        "largest": found.largest,
-        "unit": unit,
-    }
-    return Note("at-rest", at_rest_in_words(found, unit), values)
 
 
 def _differs_by_run(found: ByRun, unit: str) -> Note:

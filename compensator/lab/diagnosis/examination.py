@@ -18,7 +18,7 @@ from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import VERY_STRONG, Evidence, Screening, kept_evidence, new_directions
+from compensator.lab.screening.evidence import VERY_STRONG, Evidence, kept_evidence, new_directions
 
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
@@ -26,11 +26,11 @@ SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of
 NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/explanation/diagnosis.md)
 
 
-def best_shapes(screening: Screening) -> list[Evidence]:
-    """The best shape of every effect, best effect first."""
+def best_shapes(evidence: list[Evidence]) -> list[Evidence]:
+    """The best shape of every effect, best effect first, of evidence in that order."""
     best_of: dict[str, Evidence] = {}
-    for evidence in screening.evidence:  # the best shape first
-        best_of.setdefault(evidence.block.name, evidence)
+    for item in evidence:
+        best_of.setdefault(item.block.name, item)
     return list(best_of.values())
 
 
@@ -47,10 +47,10 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     blocks = [block for block in gathered.named if block.name in asked]
     given = [kept_evidence(gathered.with_block(item.block).bases, blocks, gathered.noise) for item in evidence]
     spans = _spans(gathered)
+    possible = [item for item in evidence if is_physical(gathered, item)]
     found: list[Candidate] = []
     for index, item in enumerate(evidence):
         alike = _alike(item, spans)
-        possible = [other for other in evidence if is_physical(gathered, other)]
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, possible, alike)}
         candidate = _candidate(gathered, item, (before, afters[index]), rivals, max(alike.values(), default=0.0))
         if candidate.score >= VERY_STRONG and candidate.physical and not is_confirmed(candidate):
@@ -69,7 +69,7 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     return [found[index] for index in order]
 
 
-def _explains(kept: dict[str, float], other: Evidence) -> bool:
+def explains(kept: dict[str, float], other: Evidence) -> bool:
     """Whether another effect loses most of its evidence, of which so much is kept once this one is in the model."""
     return kept.get(other.block.name, 0.0) < EXPLAINED_BY_RIVAL * other.noncentrality
 
@@ -120,21 +120,21 @@ def _alike(item: Evidence, spans: list[tuple[str, FloatArray, bool]]) -> dict[st
 def _too_near(item: Evidence, evidence: list[Evidence], alike: dict[str, float]) -> set[str]:
     """Effects that speak for themselves, and that stand too near for a name to be given without them."""
     paying = (other.block.name for other in evidence if other is not item and other.score > 0.0)
-    return {name for name in paying if _detectability(item, alike.get(name, 0.0)) < NAMED_ALONE}
+    return {name for name in paying if detectability(item, alike.get(name, 0.0)) < NAMED_ALONE}
 
 
-def _detectability(item: Evidence, correlation: float) -> float:
+def detectability(item: Evidence, correlation: float) -> float:
+    """d' of an effect from another one that could explain so much of what it explains, as a correlation."""
     return float(np.sqrt(item.noncentrality * max(0.0, 1.0 - correlation**2)))
 
 
 def _rivals(index: int, evidence: list[Evidence], afters: list[HeldOut], left: dict[str, float]) -> set[str]:
     """Effects that the trials cannot tell from one candidate: it explains their evidence, and they predict as well."""
-    own = evidence[index]
-    found = set()
-    for other, after in zip(evidence, afters, strict=True):
-        if other is not own and _explains(left, other) and not predicts_better(afters[index], after):
-            found.add(other.block.name)
-    return found
+    return {
+        other.block.name
+        for other, after in zip(evidence, afters, strict=True)
+        if other is not evidence[index] and explains(left, other) and not predicts_better(afters[index], after)
+    }
 
 
 def _candidate(
@@ -146,7 +146,7 @@ def _candidate(
         shape=item.block.shape,
         score=item.score,
         p_value=item.p_value,
-        detectability=_detectability(item, nearest),
+        detectability=detectability(item, nearest),
         rivals=tuple(sorted(rivals)),
         before=before.relative,
         after=after.relative,

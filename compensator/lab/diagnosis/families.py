@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
 from compensator.lab.diagnosis.confirmation import is_confirmed, is_sure
@@ -18,7 +16,7 @@ from compensator.lab.diagnosis.physical import (
 )
 from compensator.lab.diagnosis.remaining import what_remains, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
-from compensator.lab.diagnosis.wording import answer_in_words, bending_in_words
+from compensator.lab.diagnosis.wording import bending_in_words, missing_in_words, nothing_in_words, unknown_in_words
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import Candidates
@@ -36,15 +34,13 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         named: evidence for the family's effects.
         generic: evidence for free curves; None where a formula need not be held against one.
     """
-    shapes = best_shapes(named)
+    shapes = best_shapes(named.evidence)
     if not shapes:
-        return Answer("nothing", answer_in_words("nothing", 1.0, [], None), 1.0, [], None, [])
+        return Answer("nothing", nothing_in_words(1.0), 1.0, [], None, [])
     shown = [item for item in shapes if item.score > 0.0][:EXAMINED]
     examined = examine(fit, gathered, shown if len(shown) >= FEWEST_SHOWN else shapes[:FEWEST_SHOWN])
     family = _Family(fit, gathered, named, shapes, examined)
-    if (curve := family.curve(generic)) is not None:
-        return curve
-    return family.name() or family.bend() or family.nothing(generic)
+    return family.curve(generic) or family.name() or family.bend() or family.nothing(generic)
 
 
 @dataclass(frozen=True)
@@ -68,11 +64,6 @@ class _Family:
         return next(item for item in self.shapes if item.block.name == candidate.effect.name)
 
     @property
-    def best(self) -> Evidence:
-        """Of the first that is examined."""
-        return self.evidence_of(self.examined[0])
-
-    @property
     def most(self) -> Evidence:
         """What explains most, whether it can be or not."""
         return max(self.shapes, key=lambda item: item.noncentrality)
@@ -86,13 +77,14 @@ class _Family:
         """A free curve that no formula follows; None where there is none, or none is asked for."""
         if generic is None:
             return None
-        curve = unfollowed(self.fit, self.gathered, generic, self.examined, self.best)
+        first = self.examined[0]
+        curve = unfollowed(self.fit, self.gathered, generic, self.examined, self.evidence_of(first))
         if curve is None:
             return None
         driver, p_value = curve.block.name, among_all(generic.p_value)
         for index, one in enumerate(self.examined):
             self.examined[index] = replace(one, refused=f"explains much less than a curve over {driver}")
-        sentence = answer_in_words("unknown-effect", p_value, self.examined, driver)
+        sentence = unknown_in_words(first, driver, p_value)
         return Answer("unknown-effect", sentence, p_value, self.examined, driver, [], remains=True)
 
     def name(self) -> Answer | None:
@@ -116,7 +108,7 @@ class _Family:
             return ""
         if own_chance > SIGNIFICANT:
             return "may be luck among all that was tried"
-        if self._is_shadow(best):
+        if best.noncentrality < share_of(show_in) * self.most.noncentrality:
             return f"explains much less than {self.most.block.name}, which cannot be it"
         explained = fit_effects(fit, [*fit.names, candidate.effect.name])
         first = as_in_the_ladder(candidate, fit, explained, show_in)
@@ -125,8 +117,8 @@ class _Family:
         if impossible := why_impossible(explained, candidate.effect.name):
             return impossible
         examined = [first, *(one for one in self.examined if one is not candidate)]
-        sentence = answer_in_words("missing", own_chance, examined, None)
-        notes = what_remains(explained, self.gathered, candidate.effect.name)
+        sentence = missing_in_words(first, own_chance)
+        notes = what_remains(explained, show_in, candidate.effect.name)
         remains, evidence = bool(notes), best.noncentrality
         return Answer("missing", sentence, own_chance, examined, None, notes, remains, explained, evidence)
 
@@ -135,34 +127,25 @@ class _Family:
         family = self.p_value
         return among_all(self.named.chance_of(candidate.effect.name)) if family <= SIGNIFICANT else family
 
-    def _is_shadow(self, best: Evidence) -> bool:
-        """Whether it explains much less than another effect, which cannot be it."""
-        return best.noncentrality < share_of(self.gathered.show_in) * self.most.noncentrality
-
     def bend(self) -> Answer | None:
-        """What bends along with the joint, where that is not the friction it was taken for; None without any."""
-        found = self._bends() if self.p_value <= SIGNIFICANT else None
-        if found is None:
+        """What bends along with the joint, where that is not the friction it was taken for; None without any.
+
+        It explains most, for sure, and is but a part of the friction in whose place it stands, or goes too far.
+        """
+        most, gathered = self.most, self.gathered
+        bends = next((one for one in self.examined if one.effect.name == most.block.name), None)
+        if self.p_value > SIGNIFICANT or bends is None or not is_sure(bends) or not is_within_bounds(gathered, most):
             return None
-        bends, too_far = found
+        too_far = bends.effect.least_of_friction > 0.0 and is_past_scan(gathered, most)
+        part = is_too_small(gathered, most) and not is_before_scan(gathered, most)
+        if not too_far and not part:
+            return None
         ranked = [bends, *(one for one in self.examined if one is not bends)]
         sentence = bending_in_words(bends, too_far, self.fit.dataset.facts, self.p_value)
         return Answer("unknown-effect", sentence, self.p_value, ranked, bends.effect.driver, [], remains=True)
 
-    def _bends(self) -> tuple[Candidate, bool] | None:
-        """What explains most, for sure, but cannot be the friction in whose place it stands: a part, or too far."""
-        most, gathered = self.most, self.gathered
-        candidate = next((one for one in self.examined if one.effect.name == most.block.name), None)
-        if candidate is None or not is_sure(candidate) or not is_within_bounds(gathered, most):
-            return None
-        too_far = candidate.effect.least_of_friction > 0.0 and is_past_scan(gathered, most)
-        part = is_too_small(gathered, most) and not is_before_scan(gathered, most)
-        return (candidate, too_far) if too_far or part else None
-
     def nothing(self, generic: Screening | None) -> Answer:
         """That no effect is confirmed, and what is left all the same, where free curves are asked for."""
-        fit, gathered, p_value = self.fit, self.gathered, self.p_value
-        left = None if generic is None else without_a_name(fit, gathered, generic, p_value)
-        stretches = len(np.unique(fit.dataset.block_index[gathered.rows]))
-        sentence = left or answer_in_words("nothing", p_value, self.examined, None, stretches)
-        return Answer("nothing", sentence, p_value, self.examined, None, [], remains=left is not None)
+        left = None if generic is None else without_a_name(self.gathered, generic, self.p_value)
+        sentence = left or nothing_in_words(self.p_value, self.gathered.stretches)
+        return Answer("nothing", sentence, self.p_value, self.examined, None, [], remains=left is not None)

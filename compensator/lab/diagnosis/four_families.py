@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.few_rows import few_reversals
@@ -60,11 +58,6 @@ class FourFamilies:
     def in_order(self) -> list[Answer]:
         """Those that could be judged, as one comes before the other."""
         return [one for one in (self.steady, self.memory, self.rest, self.chain) if one is not None]
-
-    @property
-    def stretches(self) -> int:
-        """In how many stretches the joint slides."""
-        return len(np.unique(self.gathered.fit.dataset.block_index[self.gathered.rows]))
 
     def first(self) -> Answer:
         """The answer: that of the first family with one, but for a name of a later family that goes before it."""

@@ -66,7 +66,7 @@ def is_made_by_chain(gathered: Candidates, item: Evidence) -> bool:
 def is_within_bounds(gathered: Candidates, item: Evidence) -> bool:
     """Whether the freely fitted coefficients lie within the effect's bounds, as far as the rows can tell."""
     ranges = effect_named(item.block.name).ranges_in(gathered.fit.dataset.effort_definition.quantity)
-    found = _coefficients(gathered, item)
+    found = gathered.bases[item.block.base].coefficients(item.block.columns)
     unsure = UNSURE * _standard_error(item, found)
     return all(low - unsure <= c <= high + unsure for (low, high), c in zip(ranges, found, strict=True))
 
@@ -74,7 +74,7 @@ def is_within_bounds(gathered: Candidates, item: Evidence) -> bool:
 def is_too_small(gathered: Candidates, item: Evidence) -> bool:
     """Whether an effect that stands in the place of dry friction is but a part of it."""
     least = effect_named(item.block.name).least_of_friction * gathered.fit.dry_friction
-    return least > 0.0 and bool(np.all(_coefficients(gathered, item) < least))
+    return least > 0.0 and bool(np.all(gathered.bases[item.block.base].coefficients(item.block.columns) < least))
 
 
 def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
@@ -104,14 +104,6 @@ def _scanned(gathered: Candidates, item: Evidence) -> FloatArray:
     if not effect.ends_within_scan or not item.block.shape:
         return np.empty((0, 0))
     return np.array(effect.shapes(gathered.fit.dataset.trials[0].motion))
-
-
-def _coefficients(gathered: Candidates, item: Evidence) -> FloatArray:
-    """Freely fitted, on top of the model, shape (k,)."""
-    base = gathered.bases[item.block.base]
-    columns = item.block.columns - base.basis @ (base.basis.T @ item.block.columns)
-    found: FloatArray = np.linalg.lstsq(columns, base.residual, rcond=1e-6)[0].astype(np.float64)
-    return found
 
 
 def _standard_error(item: Evidence, coefficients: FloatArray) -> float:

@@ -80,8 +80,6 @@ def grouped(driver: FloatArray, values: FloatArray) -> BinnedMean:
         groups = np.array_split(order, MOST_GROUPS)
     table = []
     for group in groups:
-        if not len(group):
-            continue
         mean = float(values[group].mean())
         half = SIGMAS * float(np.std(values[group], ddof=1)) / np.sqrt(len(group)) if len(group) > 1 else float("nan")
         table.append((float(driver[group].mean()), mean, mean - half, mean + half, len(group)))

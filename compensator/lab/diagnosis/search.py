@@ -16,7 +16,7 @@ from compensator.lab import progress
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.confirmation import explained_part, slight_one
 from compensator.lab.diagnosis.diagnose import best_named, diagnose
-from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
+from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
@@ -115,8 +115,7 @@ def _forward(fit: Fit, most: int, diagnosis: Diagnosis, outset: float) -> Search
     while _is_to_add(diagnosis, explained) and len(fit.names) < len(start.names) + most:
         progress.enter(_adding(len(fit.names) - len(start.names) + 1))
         name, *rivals = diagnosis.classes[0]
-        added = _step("add", name, None, fit_effects(fit, [*fit.names, name]))
-        steps.append(replace(added, rivals=tuple(rivals)))
+        steps.append(_step("add", name, None, fit_effects(fit, [*fit.names, name]), tuple(rivals)))
         swapped = _swaps(start, steps[-1].fit)
         dropped = _drops(start, (swapped or steps)[-1].fit, last_too=bool(swapped))
         steps += [*swapped, *dropped]
@@ -145,7 +144,12 @@ def _past_curve(fit: Fit, most: int, unknown: Diagnosis, outset: float) -> Searc
         unknown: its diagnosis.
         outset: as `search`.
     """
-    sure = [one for one in _likely(unknown) if one.rows == "sliding" and one.gain.low > 0.0]
+    # what can be it, by very strong evidence, and helps for sure; the likeliest first
+    sure = [
+        one
+        for one in sorted(unknown.candidates, key=lambda one: -one.score)
+        if one.physical and one.score >= VERY_STRONG and one.rows == "sliding" and one.gain.low > 0.0
+    ]
     progress.enter(TRYING)
     for one in progress.each(sure[:MOST_TRIED]):
         named = replace(unknown, verdict="missing", classes=[(one.effect.name,)])
@@ -155,19 +159,13 @@ def _past_curve(fit: Fit, most: int, unknown: Diagnosis, outset: float) -> Searc
     return None
 
 
-def _likely(diagnosis: Diagnosis) -> list[Candidate]:
-    """Effects that can be it, by very strong evidence, the likeliest first."""
-    likely = [one for one in diagnosis.candidates if one.physical and one.score >= VERY_STRONG]
-    return sorted(likely, key=lambda one: -one.score)
-
-
 def _leaves_nothing(diagnosis: Diagnosis) -> bool:
     """Whether all that its model leaves is noise."""
     return diagnosis.verdict == "nothing" and not diagnosis.remains and diagnosis.p_value > SIGNIFICANT
 
 
-def _step(change: Change, effect: str, instead_of: str | None, fit: Fit) -> Step:
-    return Step(change, effect, instead_of, fit, held_out(fit))
+def _step(change: Change, effect: str, instead_of: str | None, fit: Fit, rivals: tuple[str, ...] = ()) -> Step:
+    return Step(change, effect, instead_of, fit, held_out(fit), rivals)
 
 
 def _swaps(start: Fit, fit: Fit) -> list[Step]:
@@ -177,12 +175,12 @@ def _swaps(start: Fit, fit: Fit) -> list[Step]:
         without = fit_effects(fit, [other for other in fit.names if other != name])
         rows = effect_named(name).rows
         better = None if rows == "breakaway" else best_named(without, rows)
-        if better not in (None, name) and better not in fit.names:
+        if better is not None and better not in fit.names:
             swapped = fit_effects(fit, [better if other == name else other for other in fit.names])
             now, before = on_even_terms(held_out(swapped), held_out(fit))
             if now.rms < before.rms:
                 fit = swapped
-                steps.append(_step("swap", str(better), name, fit))
+                steps.append(_step("swap", better, name, fit))
     return steps
 
 

@@ -65,10 +65,11 @@ def _leaves_nothing(gathered: Candidates, candidate: Candidate, best: Evidence, 
         return False
     fit = gathered.fit
     grown = fit_effects(fit, [*fit.names, candidate.effect.name])
-    given, left_open = gathered.with_block(best.block), open_columns(grown)
+    bases, left_open = gathered.with_block(best.block).bases, open_columns(grown)
     if left_open.shape[1]:
-        given = given.with_columns(left_open)
-    return score_of(given.bases, curve.block, given.noise) <= 0.0
+        tested = gathered.tested(left_open)
+        bases = [base.extended(tested) for base in bases]
+    return score_of(bases, curve.block, gathered.noise) <= 0.0
 
 
 def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> tuple[Evidence, HeldOut] | None:
@@ -76,7 +77,7 @@ def _curve(fit: Fit, gathered: Candidates, generic: Screening) -> tuple[Evidence
 
     A curve has more coefficients than a formula: every chain bends a little of what it measures.
     """
-    if among_all(generic.p_value) > SIGNIFICANT or not generic.evidence:
+    if among_all(generic.p_value) > SIGNIFICANT:
         return None
     best = generic.evidence[0]
     if best.score <= 0.0 or best.p_value > SIGNIFICANT:

@@ -1,47 +1,53 @@
 """What a diagnosis says in words."""
 
 from compensator.lab.chance import SIGNIFICANT, chance_in_words
-from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
+from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.dataset import BLOCK_S
-from compensator.lab.screening.base import HYSTERESIS_DRIVER as HYSTERESIS
+from compensator.lab.screening.base import HYSTERESIS_DRIVER
 from compensator.lab.screening.evidence import least_p_value
 
 LOOK_AT_HOSES = "Look at hoses, cables and seals that bend with the joint."
 
 
-def answer_in_words(
-    verdict: Verdict, p_value: float, candidates: list[Candidate], driver: str | None, stretches: int | None = None
-) -> str:
-    """The answer in one sentence, with its numbers.
-
-    Args:
-        verdict: as in a diagnosis.
-        p_value: as in a diagnosis.
-        candidates: as in a diagnosis.
-        driver: as in a diagnosis.
-        stretches: independent stretches of BLOCK_S that it rests on; None where that is no limit.
-    """
-    if verdict == "nothing" and stretches is not None and least_p_value(stretches) > SIGNIFICANT:
-        return _too_few(stretches)
-    if verdict == "nothing":
-        return _nothing(p_value)
-    best = candidates[0]
-    if verdict == "unknown-effect":
-        why = "does not follow its curve" if best.physical else "would need a sign or size that is not physical"
-        look = ""
-        if driver == HYSTERESIS:
-            driver, look = "where the joint has turned back, as what bends along and slides does", f" {LOOK_AT_HOSES}"
-        return (
-            f"Something is missing, and it is none of the catalogue: it varies with {driver}; the nearest formula, "
-            f"{best.effect.title.lower()}, {why} ({chance_in_words(p_value)}).{look}"
-        )
+def missing_in_words(best: Candidate, p_value: float) -> str:
+    """The answer where an effect is missing, with its numbers."""
     gain, where = best.gain.in_words(best.before, best.after, 0), ", near reversals too," * (best.rows == "moving")
     sure = "" if best.gain.low > 0.0 else ", but not for sure"
     return (
         f"{named_in_words(best, 'trials')}: adding it changes the held-out error{where} from {best.before:.2%} to "
         f"{best.after:.2%}{sure} ({gain}; {chance_in_words(p_value)})."
+    )
+
+
+def unknown_in_words(nearest: Candidate, driver: str, p_value: float) -> str:
+    """The answer where what is left varies with a driver, and no formula follows that, nor does the nearest one."""
+    why = "does not follow its curve" if nearest.physical else "would need a sign or size that is not physical"
+    look = ""
+    if driver == HYSTERESIS_DRIVER:
+        driver, look = "where the joint has turned back, as what bends along and slides does", f" {LOOK_AT_HOSES}"
+    return (
+        f"Something is missing, and it is none of the catalogue: it varies with {driver}; the nearest formula, "
+        f"{nearest.effect.title.lower()}, {why} ({chance_in_words(p_value)}).{look}"
+    )
+
+
+def nothing_in_words(p_value: float, stretches: int | None = None) -> str:
+    """The answer where no effect is confirmed.
+
+    Args:
+        p_value: as in a diagnosis.
+        stretches: independent stretches of BLOCK_S that it rests on; None where that is no limit.
+    """
+    if stretches is not None and least_p_value(stretches) > SIGNIFICANT:
+        return _too_few(stretches)
+    if p_value > SIGNIFICANT:
+        chance = f"{chance_in_words(p_value)}; {SIGNIFICANT:g} or less would tell"
+        return f"Nothing is missing that these trials can show ({chance})."
+    return (
+        f"No effect of the catalogue is confirmed: the residual is not mere noise ({chance_in_words(p_value)}), but "
+        "none lowers the held-out error for sure."
     )
 
 
@@ -57,27 +63,12 @@ def named_in_words(best: Candidate, of: str) -> str:
     return f"{best.effect.title} {missing}" + (f"; these {of} cannot tell it from {others}" if others else "")
 
 
-def problem_in_words(problem: str) -> str:
-    """The answer where the data themselves are wrong."""
-    return f"The data have a problem that no effect could be told from: {problem}."
-
-
 def _too_few(stretches: int) -> str:
     enough = next(count for count in range(1, 99) if least_p_value(count) <= SIGNIFICANT)
     return (
         f"These trials are too short to tell whether anything is missing: only {stretches} independent stretches of "
         f"{BLOCK_S:g} s, at best {chance_in_words(least_p_value(stretches))}, and {SIGNIFICANT:g} is needed; record "
         f"{BLOCK_S * (enough - stretches):g} more seconds of motion at least; other loads and speeds tell most."
-    )
-
-
-def _nothing(p_value: float) -> str:
-    if p_value > SIGNIFICANT:
-        chance = f"{chance_in_words(p_value)}; {SIGNIFICANT:g} or less would tell"
-        return f"Nothing is missing that these trials can show ({chance})."
-    return (
-        f"No effect of the catalogue is confirmed: the residual is not mere noise ({chance_in_words(p_value)}), but "
-        "none lowers the held-out error for sure."
     )
 
 

@@ -56,15 +56,12 @@ def bursts_of(dataset: Dataset, residual: FloatArray, weights: FloatArray, rows:
         weights: that bring them to like variance in like motion, shape (rows.sum(),).
         rows: chosen, shape (N,).
     """
-    labels, stretch = np.unique(dataset.block_index[rows], return_inverse=True)
-    count = np.bincount(stretch, minlength=len(labels))
-    power = np.bincount(stretch, weights=(residual * weights) ** 2, minlength=len(labels))
-    known = np.bincount(stretch, weights=dataset.steadiness[rows] ** 2, minlength=len(labels))
+    _, stretch = np.unique(dataset.block_index[rows], return_inverse=True)
+    power = np.bincount(stretch, weights=(residual * weights) ** 2)
+    known = np.bincount(stretch, weights=dataset.steadiness[rows] ** 2)
     enough = known >= FEWEST_ROWS
-    if int(enough.sum()) < FEWEST_STRETCHES:
-        return Bursts(float("nan"), 0, int(enough.sum()), ())
-    scatter = np.sqrt(power / np.maximum(count, 1))
-    usual = float(np.median(scatter[enough]))
+    scatter = np.sqrt(power / np.bincount(stretch))
+    usual = float(np.median(scatter[enough])) if int(enough.sum()) >= FEWEST_STRETCHES else 0.0
     if usual == 0.0:
         return Bursts(float("nan"), 0, int(enough.sum()), ())
     wild = enough & (scatter >= LARGER * usual)

@@ -6,9 +6,7 @@ is smaller where the tails of a statistic are known less well than its middle, o
 little of what is asked for.
 """
 
-from dataclasses import dataclass, fields
-
-MOST = 0.01  # of complete models
+from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,11 +26,6 @@ class ErrorBudget:
     ripple: float
     line: float
     growing: float
-
-    @property
-    def whole(self) -> float:
-        """The chance that any of them is answered by noise alone, at most."""
-        return float(sum(getattr(self, one.name) for one in fields(self))) + self.wandering
 
 
 PLAIN = ErrorBudget(

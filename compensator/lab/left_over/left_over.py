@@ -50,12 +50,11 @@ def left_over(gathered: Candidates) -> LeftOver:
     constant there.
     """
     dataset, rows, base = gathered.fit.dataset, gathered.rows, gathered.as_measured(WITH_CHAIN)
-    steady = gathered.show_in == "sliding"
     determined = RowWeights.learnt(dataset, gathered.fit.residual, rows).determined(dataset, rows)
     remainder = remainder_of(dataset, determined * base.residual / gathered.weights, rows)
     # so little may be of the motion, whose own frequencies most trials can share
     swing = swing_of(gathered) if remainder.share > LEAST_SHARE else None
-    if not steady:
+    if gathered.show_in != "sliding":
         return LeftOver(remainder, swing)
     line = line_of(gathered)
     if not _is_plain(gathered.fit):
@@ -85,7 +84,7 @@ def _is_plain(fit: Fit) -> bool:
 
 
 def unexplained_in_words(
-    left: LeftOver, driver: str | None, p_value: float, stretches: int, facts: Facts, wanders: str = ""
+    left: LeftOver, driver: str | None, p_value: float, stretches: int, facts: Facts, wanders: str
 ) -> str:
     """The answer where something is left that no effect and no curve explains.
 

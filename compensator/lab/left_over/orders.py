@@ -19,7 +19,6 @@ from compensator.lab.model.held_out_error import LEAST_OF_EFFORT, rms
 from compensator.lab.model.order_search import FORCE, FRICTION, GROWING, STEPS, Path
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.base import Base
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import VERY_STRONG
@@ -39,7 +38,6 @@ class Line:
         kind: a force, friction, or what grows with the square of the speed.
         chance: of such a line at any order, in noise alone.
         share: its root mean square over the effort's.
-        foretold: its evidence (2 ln L) in each stretch by the coefficients of all others, without the best stretch.
     """
 
     order: float
@@ -48,7 +46,6 @@ class Line:
     kind: str
     chance: float
     share: float
-    foretold: float
 
 
 def line_of(gathered: Candidates, most: float = PLAIN.line, most_growing: float = PLAIN.growing) -> Line | None:
@@ -92,7 +89,7 @@ def with_found_order(gathered: Candidates) -> Candidates:
     shape = (line.rad_per_position,)
     made = dataset.columns_of_effects([(effect_named(name), [shape]) for name in first])
     found = [
-        replace(one, columns=gathered.tested(columns), scanned=one.scanned + line.tried, key=shape)
+        replace(one, columns=gathered.tested(columns), scanned=one.scanned + line.tried, shape=shape)
         for one, (columns,) in zip(first.values(), made, strict=True)
     ]
     return replace(gathered, named=[*gathered.named, *found])
@@ -145,8 +142,9 @@ def _line(gathered: Candidates, path: Path, base: Base, peak: _Peak, tries: floa
     share = rms(left @ coefficients / gathered.weights) / rms(gathered.fit.dataset.effort[gathered.rows])
     if foretold < 2.0 * VERY_STRONG * peak.noise or share < LEAST_OF_EFFORT:
         return None
-    order = peak.order / _cycle(gathered.fit.dataset)
-    return Line(order, peak.order, round(tries), peak.kind, min(1.0, tries * peak.chance), share, foretold / peak.noise)
+    cycle = 2.0 * np.pi if gathered.fit.dataset.facts.joint == "linear" else 1.0  # rad per rad are cycles per turn
+    chance = min(1.0, tries * peak.chance)
+    return Line(peak.order / cycle, peak.order, round(tries), peak.kind, chance, share)
 
 
 def foretold_by_others(columns: FloatArray, residual: FloatArray, stretch: np.ndarray) -> tuple[FloatArray, float]:
@@ -164,11 +162,6 @@ def foretold_by_others(columns: FloatArray, residual: FloatArray, stretch: np.nd
     evidence = 2.0 * np.sum(others * scores, axis=1) - np.einsum("si,sij,sj->s", others, normal, others)
     coefficients: FloatArray = np.linalg.pinv(whole, rcond=NEGLIGIBLE) @ sums
     return coefficients, float(evidence.sum() - evidence.max())
-
-
-def _cycle(dataset: Dataset) -> float:
-    """What an order is of, in rad per unit of position: a turn of a joint has 2 pi rad, a length has none."""
-    return 2.0 * np.pi if dataset.facts.joint == "linear" else 1.0
 
 
 def recurring_in_words(line: Line, facts: Facts) -> str:

@@ -42,12 +42,10 @@ class Swing:
 
     Attributes:
         frequency_hz: of it.
-        chance: of such a line at any frequency, in noise alone.
         of_voltage: it swings with the voltage that drives the motor, as a supply does.
     """
 
     frequency_hz: float
-    chance: float
     of_voltage: bool
 
 
@@ -110,9 +108,8 @@ def _line(gathered: Candidates, carrier: FloatArray, of_voltage: bool, most: flo
         return None
     best = int(np.argmax(np.where(peaks, told.whole, 0.0)))
     independent = max((highest_hz - LEAST_HZ) * longest_s, 1.0)
-    by_chance = chance_over_noise(told.gains[:, best], told.shares, float(told.known_from[best]))
-    chance = min(1.0, independent * by_chance)
-    return Swing(float(at_hz[best]), chance, of_voltage) if chance <= most else None
+    chance = independent * chance_over_noise(told.gains[:, best], told.shares, float(told.known_from[best]))
+    return Swing(float(at_hz[best]), of_voltage) if chance <= most else None
 
 
 def _told(

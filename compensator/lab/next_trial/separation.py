@@ -82,9 +82,7 @@ def _rival(gathered: Candidates, candidate: Candidate) -> Rival:
     shapes = tuple(effect.shapes(gathered.fit.dataset.trials[0].motion))
     shape = candidate.shape
     block = _block(gathered, candidate)
-    base = gathered.bases[block.base]
-    projected = block.columns - base.basis @ (base.basis.T @ block.columns)
-    coefficients = np.linalg.lstsq(projected, base.residual, rcond=1e-6)[0].astype(np.float64)
+    coefficients = gathered.bases[block.base].coefficients(block.columns)
     return Rival(effect, shape, coefficients, shapes if shape in shapes else (*shapes, shape))
 
 
@@ -106,7 +104,7 @@ def _between_stretches(gathered: Candidates, candidate: Candidate, left: FloatAr
 
 
 def _block(gathered: Candidates, candidate: Candidate) -> Block:
-    return next(one for one in gathered.named if one.name == candidate.effect.name and one.key == candidate.shape)
+    return next(one for one in gathered.named if one.name == candidate.effect.name and one.shape == candidate.shape)
 
 
 def _left_by_best(gathered: Candidates, candidate: Candidate) -> FloatArray:

@@ -62,7 +62,7 @@ def _separation(fit: Fit, rivals: list[Candidate]) -> Rivalry:
         return BreakawaySeparation(fit, rivals)
     wide = fit.dataset.choice_for([one.effect for one in rivals])
     gathered = gather(widened(fit, wide) if wide != fit.dataset.rows else fit, show_in)
-    known = {(block.name, block.key) for block in gathered.named}
+    known = {(block.name, block.shape) for block in gathered.named}
     rivals = [one for one in rivals if (one.effect.name, one.shape) in known]
     named = {one.effect.name for one in rivals}
     of_one_kind = [name for name, _ in known if effect_named(name).pipeline == rivals[0].effect.pipeline]

@@ -20,19 +20,14 @@ class Block:
         columns: over the rows tested, shape (n, k).
         base: index of the base it is judged against (see `Base`).
         scanned: how many shapes of the effect are scanned.
-        key: the shape, or whatever tells blocks of one name apart.
+        shape: of the effect; empty of one without, and of a free curve.
     """
 
     name: str
     columns: FloatArray
     base: int
     scanned: int
-    key: object = None
-
-    @property
-    def shape(self) -> Shape:
-        """The effect's shape; empty for an effect without one."""
-        return self.key if isinstance(self.key, tuple) else ()
+    shape: Shape = ()
 
 
 @dataclass(frozen=True)
@@ -47,6 +42,12 @@ class Base:
         """Project effort (n,) out of columns (n, k)."""
         basis = orthonormal(columns)
         return cls(basis, effort - basis @ (basis.T @ effort))
+
+    def coefficients(self, columns: FloatArray) -> FloatArray:
+        """Of columns (n, k), fitted freely on top of the base, shape (k,)."""
+        rest = columns - self.basis @ (self.basis.T @ columns)
+        found: FloatArray = np.linalg.lstsq(rest, self.residual, rcond=1e-6)[0].astype(np.float64)
+        return found
 
     def extended(self, columns: FloatArray) -> "Base":
         """The base with columns (n, k) beside its own."""

@@ -37,7 +37,7 @@ def _between(gathered: Candidates, own: list[Block]) -> Block:
 
     def block_of(shape: Shape) -> Block:
         columns = dataset.unchecked_columns(effect, [shape])[0]
-        return replace(own[0], columns=gathered.tested(columns), scanned=scanned, key=shape)
+        return replace(own[0], columns=gathered.tested(columns), scanned=scanned, shape=shape)
 
     def power(block: Block) -> float:
         base = gathered.bases[block.base]

@@ -66,18 +66,18 @@ class Candidates:
     weights: FloatArray
     bases: list[Base]
     named: list[Block]
-    curves: "Curves"
+    curves: Curves
     left_out: dict[str, str]
     noise: Noise | None = None
+
+    @property
+    def stretches(self) -> int:
+        """How many independent stretches of BLOCK_S the tested rows are of."""
+        return len(np.unique(self.fit.dataset.block_index[self.rows]))
 
     def with_block(self, block: Block) -> "Candidates":
         """The same candidates judged on top of one more block."""
         return replace(self, bases=[base.extended(block.columns) for base in self.bases])
-
-    def with_columns(self, columns: FloatArray) -> "Candidates":
-        """The same candidates judged on top of more columns, given over all rows, shape (N, k)."""
-        tested = self.tested(columns)
-        return replace(self, bases=[base.extended(tested) for base in self.bases])
 
     def tested(self, columns: FloatArray) -> FloatArray:
         """Columns (N, k) given over all rows as blocks have them: the tested rows, weighted and evened, (n, k)."""

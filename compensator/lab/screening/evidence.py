@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import chdtrc, erfc
 
-from compensator.lab.chance import SIGN_FLIPS
+from compensator.lab.chance import LEAST_STATED, SIGN_FLIPS
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.screening.base import Base, Block
@@ -61,9 +61,9 @@ class Screening:
         What is surest is not always what is named, since it may not help on held-out rows, or may not be physical; its
         p-value is not that of another name.
         """
-        own = min(item.p_value for item in self.evidence if item.block.name == name)
-        least = min(item.p_value for item in self.evidence)
-        return self.p_value if self.chance is None or own <= least else self.chance(own)
+        if self.chance is None:
+            return self.p_value
+        return self.chance(min(item.p_value for item in self.evidence if item.block.name == name))
 
 
 def screen(
@@ -81,19 +81,20 @@ def screen(
         seed: of the flips.
         noise: of the rows, for scores to be held against those of `screen_against_noise`.
     """
-    _, labels = np.unique(stretch, return_inverse=True)
-    flips = _sign_flips(int(labels.max()) + 1, seed)
-    evidence, lowest = [], np.ones(len(flips))
+    labels, signs = _flipped(stretch, seed)
+    evidence, lowest = [], np.ones(len(signs))
     inflation = max(inflation_of(base.residual) for base in bases)
     for block in blocks:
-        judged = _judge(bases[block.base], block, labels, flips, inflation, noise)
-        if judged is not None:
-            evidence.append(judged[0])
-            lowest = np.minimum(lowest, judged[1])
-    if not evidence:
-        return Screening([], 1.0)
-    observed = min(item.p_value for item in evidence)
-    p_value = (1.0 + float(np.sum(lowest <= observed * (1.0 + 1e-9)))) / (1.0 + len(flips))
+        base = bases[block.base]
+        directions = new_directions(base, block)
+        if not directions.shape[1]:
+            continue
+        p_values = _robust_p(_sums(base, directions, labels), signs)
+        lowest = np.minimum(lowest, p_values)
+        gain = _gain(base, directions, inflation, noise)
+        score = gain - _price(block, directions, inflation)
+        evidence.append(Evidence(block, score, gain, float(p_values[0]), _contribution(base, directions)))
+    p_value = float(np.mean(lowest <= lowest[0] * (1.0 + 1e-9)))
     return Screening(sorted(evidence, key=lambda item: -item.score), p_value)
 
 
@@ -122,10 +123,9 @@ def screen_against_noise(bases: Sequence[Base], blocks: Sequence[Block], noise: 
         size = strength(share, covariance[own, own])
         known = _compressed(size, len(base.residual) / inflation)
         gain = _likelihood(base, share, inflation) if noise.outweighed else known
-        direction = directions @ share
-        norm = float(np.linalg.norm(direction)) or 1.0
         score = gain - _price(block, directions, inflation)
-        evidence.append(Evidence(block, score, gain, noise.chance(size, len(share)), direction / norm))
+        direction = _contribution(base, directions)
+        evidence.append(Evidence(block, score, gain, noise.chance(size, len(share)), direction))
     least = min(item.p_value for item in evidence)
     chance = noise.joint_chances(covariance, places)
     return Screening(sorted(evidence, key=lambda item: -item.score), chance(least), chance)
@@ -142,8 +142,7 @@ def screen_events(
     place of what the model has beyond that base, and must explain more than that; `model` is the base that holds what
     the model itself has, within its bounds.
     """
-    _, labels = np.unique(unit, return_inverse=True)
-    signs = np.vstack([np.ones(int(labels.max()) + 1), _sign_flips(int(labels.max()) + 1, seed)])
+    labels, signs = _flipped(unit, seed)
     evidence, highest = [], np.full(len(signs), -np.inf)
     inflation = max(inflation_of(base.residual) for base in bases)
     for block in blocks:
@@ -153,20 +152,15 @@ def screen_events(
         if rank == 0:
             continue
         if block.base == 0:
-            by_unit = np.zeros((signs.shape[1], rank))
-            np.add.at(by_unit, labels, directions * base.residual[:, None])
-            gains = np.array([_likelihood(base, share, inflation) for share in signs @ by_unit])
+            shares = signs @ _sums(base, directions, labels)
+            gains = np.array([_likelihood(base, share, inflation) for share in shares])
         else:
             gains = _gains_in_place(bases[model], base, directions, signs[:, labels]) / inflation
-        replaced = max(bases[model].basis.shape[1] - base.basis.shape[1], 0) if block.base else 0
+        replaced = max(bases[model].basis.shape[1] - base.basis.shape[1], 0)
         scores = gains - (rank - replaced) * np.log(count / inflation) - 2.0 * np.log(block.scanned)
         highest = np.maximum(highest, scores)
-        own = directions @ (directions.T @ base.residual)
-        norm = float(np.linalg.norm(own))
         gain = max(float(gains[0]), 0.0)
-        evidence.append(Evidence(block, float(scores[0]), gain, _rank(scores), own / (norm or 1.0)))
-    if not evidence:
-        return Screening([], 1.0)
+        evidence.append(Evidence(block, float(scores[0]), gain, _rank(scores), _contribution(base, directions)))
     return Screening(sorted(evidence, key=lambda item: -item.score), _rank(highest))
 
 
@@ -197,7 +191,7 @@ def among_all(p_value: float) -> float:
 
 def least_p_value(stretches: int) -> float:
     """The lowest p of a diagnosis on so many stretches: one flip of signs in 2^(stretches - 1) changes nothing."""
-    return among_all(max(0.5 ** max(stretches - 1, 0), 1.0 / (1.0 + SIGN_FLIPS)))
+    return among_all(max(0.5 ** (stretches - 1), LEAST_STATED))
 
 
 def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block], noise: Noise | None = None) -> dict[str, float]:
@@ -224,9 +218,8 @@ def most_likely(bases: Sequence[Base], blocks: Sequence[Block]) -> Block | None:
     best, highest = None, 0.0
     for block in blocks:
         directions = new_directions(bases[block.base], block)
-        if directions.shape[1]:
-            score = _gain(bases[block.base], directions, inflation, None) - _price(block, directions, inflation)
-            best, highest = (block, score) if score > highest else (best, highest)
+        score = _gain(bases[block.base], directions, inflation, None) - _price(block, directions, inflation)
+        best, highest = (block, score) if score > highest else (best, highest)
     return best
 
 
@@ -248,23 +241,17 @@ def _price(block: Block, directions: FloatArray, inflation: float) -> float:
     return float(rank * np.log(count / inflation) + 2.0 * np.log(block.scanned))
 
 
-def _judge(
-    base: Base, block: Block, labels: IntArray, flips: FloatArray, inflation: float, noise: Noise | None
-) -> tuple[Evidence, FloatArray] | None:
-    directions = new_directions(base, block)
-    rank = directions.shape[1]
-    if rank == 0:
-        return None
-    share = directions.T @ base.residual
-    price = _price(block, directions, inflation)
-    likelihood = _gain(base, directions, inflation, noise)
-    by_stretch = np.zeros((int(labels.max()) + 1, rank))
-    np.add.at(by_stretch, labels, directions * base.residual[:, None])
-    p_values = _robust_p(by_stretch, np.vstack([np.ones(len(by_stretch)), flips]))
-    own = directions @ share
-    norm = float(np.linalg.norm(own))
-    found = Evidence(block, float(likelihood - price), likelihood, float(p_values[0]), own / (norm or 1.0))
-    return found, p_values[1:]
+def _sums(base: Base, directions: FloatArray, labels: IntArray) -> FloatArray:
+    """What each stretch (of each row in `labels`) has of the score of directions (n, rank), (stretches, rank)."""
+    sums = np.zeros((int(labels.max()) + 1, directions.shape[1]))
+    np.add.at(sums, labels, directions * base.residual[:, None])
+    return sums
+
+
+def _contribution(base: Base, directions: FloatArray) -> FloatArray:
+    """What directions (n, rank) explain of a base's residual, unit norm, shape (n,); zeros where that is nothing."""
+    own: FloatArray = directions @ (directions.T @ base.residual)
+    return own / (float(np.linalg.norm(own)) or 1.0)
 
 
 def new_directions(base: Base, block: Block) -> FloatArray:
@@ -307,6 +294,9 @@ def inflation_of(residual: FloatArray) -> float:
     return (1.0 + lag_one) / (1.0 - lag_one)
 
 
-def _sign_flips(stretches: int, seed: int) -> FloatArray:
-    generator = np.random.default_rng(seed)
-    return generator.choice(np.array([-1.0, 1.0]), size=(SIGN_FLIPS, stretches))
+def _flipped(stretch: IntArray, seed: int) -> tuple[IntArray, FloatArray]:
+    """Stretches (n,) counted from 0, and signs of each: as measured, then flipped, (1 + SIGN_FLIPS, stretches)."""
+    _, labels = np.unique(stretch, return_inverse=True)
+    count = int(labels.max()) + 1
+    flips = np.random.default_rng(seed).choice(np.array([-1.0, 1.0]), size=(SIGN_FLIPS, count))
+    return labels, np.vstack([np.ones(count), flips])

@@ -65,7 +65,7 @@ class _Builder:
         """Blocks of all effects that can be judged, and why the others cannot."""
         dataset = self._fit.dataset
         wanted, left_out = self._judged()
-        made = dataset.columns_of_effects([(effect, shapes) for effect, shapes in wanted])
+        made = dataset.columns_of_effects(wanted)
         blocks = [
             Block(effect.name, self.weighted(columns), self._base_without(effect.standing_in), len(shapes), shape)
             for (effect, shapes), found in zip(wanted, made, strict=True)
@@ -79,9 +79,11 @@ class _Builder:
         for effect in catalogue.candidates(self._fit.names, dataset.facts):
             if effect.rows != self._show_in:
                 continue
-            hiding = [name for name in effect.hidden_by if name in self._fit.names]
-            if hiding:
-                left_out[effect.name] = _hidden(effect, hiding)
+            if hiding := [name for name in effect.hidden_by if name in self._fit.names]:
+                left_out[effect.name] = (
+                    f"{effect.name} hides in the free scale of {' and '.join(hiding)}: nothing can tell it from "
+                    f"{' or '.join(effect.confused_with)}; {effect.excited_by} would"
+                )
                 continue
             try:
                 dataset.check_applicable(effect)
@@ -99,13 +101,6 @@ class _Builder:
             effort = self._weights * self._fit.target[self._rows]
             self.bases.append(Base.of(self.weighted(columns), effort))
         return self._index[nuisances]
-
-
-def _hidden(effect: Effect, hiding: list[str]) -> str:
-    return (
-        f"{effect.name} hides in the free scale of {' and '.join(hiding)}: nothing can tell it from "
-        f"{' or '.join(effect.confused_with)}; {effect.excited_by} would"
-    )
 
 
 def with_noise(gathered: Candidates) -> Candidates:

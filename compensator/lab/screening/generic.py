@@ -9,14 +9,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from compensator.lab.effects.free_curve import WAYS, ways_of
+from compensator.lab.effects.free_curve import KNOTS, WAYS, ways_of
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.recordings.reversals import slider
 from compensator.lab.rows.dataset import Dataset, Trial
 from compensator.lab.rows.drivers import DRIVERS, available
 from compensator.lab.screening.base import HYSTERESIS_DRIVER
 
-KNOTS = 7
 KNOT_SHARES = np.linspace(0.0, 1.0, KNOTS)
 SPLINED = ("position", "velocity", "acceleration", "load", "load_kg", "temperature", "time")
 SHARES = (0.06, 0.2, 0.6)  # of the travel: from beyond what surfaces give to what hardly slides

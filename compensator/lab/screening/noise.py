@@ -8,7 +8,7 @@ their own colour, of one source (a filter that changes with the speed: Priestley
 stop to stop beside that (`stops`).
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -105,7 +105,7 @@ class Noise:
         """
         basis, residual = left
         found, longest = _places(dataset, rows, residual)
-        products, pairs = _products(((residual, place) for place in found), longest)
+        products, pairs = _products(residual, found, longest)
         free = len(residual) / max(len(residual) - basis.shape[1], 1)
         stretches = len(np.unique(dataset.block_index[rows]))
         outweighed = before > 2.0 * float(residual @ residual)
@@ -113,13 +113,13 @@ class Noise:
         noise = noise._given_back(products, pairs, lambda one: one.taken(basis))
         if strokes is None:
             return noise
-        cleared = strokes.scaled(residual[:, None], np.zeros(int(strokes.index.max()) + 1))[:, 0]
-        products, _ = _products(((cleared, place) for place in found), longest)
+        cleared = strokes.scaled(residual[:, None], np.zeros_like(strokes.power))[:, 0]
+        products, _ = _products(cleared, found, longest)
         other = noise._given_back(products, pairs, lambda one: one.taken(basis) + one.taken_by(strokes))
         variance = strokes.variance(basis, residual, other.covariance)
         if variance == 0.0:
             return noise
-        shared, _ = _products(((strokes.share, place) for place in _within(strokes, found)), longest)
+        shared, _ = _products(strokes.share, _within(strokes, found), longest)
         noise = replace(noise, autocovariances=_less(noise.autocovariances, _tapered(variance * shared, pairs)))
         evening = strokes.evening(variance, noise.covariance)
         return replace(noise, strokes=strokes, from_stop_to_stop=variance, evening=evening)
@@ -138,14 +138,14 @@ class Noise:
 
     @cached_property
     def _gains(self) -> list[list[FloatArray]]:
-        """Of each place: found once for all directions that are asked about."""
-        return [self._gains_of(place) for place in self.places]
-
-    def _gains_of(self, place: _Place) -> list[FloatArray]:
-        """Of noise from white to the colour of each kind of a place, by frequency, shape (length // 2 + 1, 1) each."""
-        speeds = [speed for speed, _, _ in place.kinds]
-        densities = [place.power[one] * spectral_density(self.autocovariances[one], place.length) for one in speeds]
-        return [np.sqrt(density)[:, None] for density in densities]
+        """Of noise from white to the colour of each kind of each place, by frequency, shape (length // 2 + 1, 1)."""
+        return [
+            [
+                np.sqrt(place.power[speed] * spectral_density(self.autocovariances[speed], place.length))[:, None]
+                for speed, _, _ in place.kinds
+            ]
+            for place in self.places
+        ]
 
     def covariance(self, directions: FloatArray) -> FloatArray:
         """Of what noise puts into each of the directions (n, k) of evened rows: shape (k, k)."""
@@ -155,7 +155,7 @@ class Noise:
             passed = _passed(gains, place.spectra(directions[place.rows]))
             passed[1:-1] *= np.sqrt(2.0)  # negative frequencies, too
             total += (passed.real.T @ passed.real + passed.imag.T @ passed.imag) / place.length
-        if self.strokes is not None and self.from_stop_to_stop > 0.0:
+        if self.strokes is not None:
             sums = self.strokes.sums(directions)
             total += self.from_stop_to_stop * (sums.T @ sums)
         symmetric: FloatArray = 0.5 * (total + total.T)
@@ -175,7 +175,8 @@ class Noise:
         restricted likelihood, by moments: Patterson, Thompson 1971). A fit takes most where its columns vary as slowly
         as the noise does. Shape (SPEEDS, lags).
         """
-        spread = np.concatenate([self._spread(place, basis[place.rows]) for place in self.places])
+        each = zip(self.places, self._gains, strict=True)
+        spread = np.concatenate([_spread(place, gains, basis[place.rows]) for place, gains in each])
         other = spread - 0.5 * basis @ (basis.T @ spread)
         products = [self._crossed(place, basis[place.rows], other[place.rows]) for place in self.places]
         found: FloatArray = np.sum(products, axis=0)
@@ -184,22 +185,14 @@ class Noise:
     def taken_by(self, strokes: StopToStop) -> FloatArray:
         """The same of a fit of each stroke's share of static friction; shape (SPEEDS, lags)."""
         products = np.zeros((SPEEDS, self.autocovariances.shape[1]))
-        for place in self.places:
+        for place, gains in zip(self.places, self._gains, strict=True):
             there, own = np.unique(strokes.index[place.rows], return_inverse=True)
             basis = np.where(own[:, None] == np.arange(len(there)), strokes.share[place.rows][:, None], 0.0)
             size = np.linalg.norm(basis, axis=0)
             basis = basis / np.where(size > 0.0, size, 1.0)
-            spread = self._spread(place, basis)
+            spread = _spread(place, gains, basis)
             products += self._crossed(place, basis, spread - 0.5 * basis @ (basis.T @ spread))
         return products
-
-    def _spread(self, place: _Place, values: FloatArray) -> FloatArray:
-        """The covariance of one trial's rows, but for what lasts a stroke, times values (n, k)."""
-        found, gains = np.zeros_like(values), self._gains_of(place)
-        passed = _passed(gains, place.spectra(values))
-        for gain, (_, inside, grid) in zip(gains, place.kinds, strict=True):
-            found[inside] = np.fft.irfft(gain * passed, place.length, axis=0)[grid]
-        return found
 
     def _crossed(self, place: _Place, one: FloatArray, other: FloatArray) -> FloatArray:
         """Sums of products by lag of two of one trial's columns (n, k) each, both ways, by kind; (SPEEDS, lags)."""
@@ -215,17 +208,16 @@ class Noise:
         """The chance that noise alone is as strong in one block of that rank (Snedecor's F: the noise is learnt)."""
         return float(fdtrc(rank, self.known_from, strength_found / rank))
 
-    def joint_chances(self, covariance: FloatArray, blocks: Sequence[slice], seed: int = 0) -> Callable[[float], float]:
+    def joint_chances(self, covariance: FloatArray, blocks: Sequence[slice]) -> Callable[[float], float]:
         """How likely noise alone brings any of the blocks' own chances down to a given one.
 
         Args:
             covariance: of all blocks' shares, shape (K, K).
             blocks: which of them each block has.
-            seed: of the draws.
         """
         powers, axes = np.linalg.eigh(covariance)
         root = axes * np.sqrt(np.maximum(powers, 0.0))
-        generator = np.random.default_rng(seed)
+        generator = np.random.default_rng(0)
         drawn = generator.standard_normal((DRAWS, len(powers))) @ root.T
         known = generator.chisquare(self.known_from, DRAWS) / self.known_from
         strongest: dict[int, FloatArray] = {}  # of each draw, by rank
@@ -291,10 +283,10 @@ def _power(residual: FloatArray, speed: IntArray, overall: FloatArray) -> FloatA
     return np.where(overall > 0.0, power, 1.0)
 
 
-def _products(parts: Iterator[tuple[FloatArray, _Place]], longest: int) -> tuple[FloatArray, FloatArray]:
-    """Sums of products of two values (n,) of one place and kind, by lag, and of how many; (SPEEDS, longest) each."""
+def _products(values: FloatArray, places: Iterable[_Place], longest: int) -> tuple[FloatArray, FloatArray]:
+    """Sums of products of two of the values (n,), of one place and kind, by lag, and of how many; (SPEEDS, longest)."""
     products, pairs = np.zeros((SPEEDS, longest)), np.zeros((SPEEDS, longest))
-    for values, place in parts:
+    for place in places:
         lags = min(longest, place.length // 2)
         for speed, inside, grid in place.kinds:
             filled = np.zeros((2, place.length))
@@ -323,6 +315,15 @@ def _less(whole: FloatArray, part: FloatArray) -> FloatArray:
         for a, b in zip(whole, part, strict=True)
     ]
     found: FloatArray = np.fft.irfft(np.array(kept), 2 * lags, axis=1)[:, :lags]
+    return found
+
+
+def _spread(place: _Place, gains: list[FloatArray], values: FloatArray) -> FloatArray:
+    """The covariance of one trial's rows, but for what lasts a stroke, times values (n, k)."""
+    found = np.zeros_like(values)
+    passed = _passed(gains, place.spectra(values))
+    for gain, (_, inside, grid) in zip(gains, place.kinds, strict=True):
+        found[inside] = np.fft.irfft(gain * passed, place.length, axis=0)[grid]
     return found
 
 

@@ -4,8 +4,6 @@ They stand in every diagnosis. A small delay looks like jerk; a sign smoothed by
 difference of steep sigmoids. An effect that means one of these (see `Effect.standing_in`) is judged without it.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from compensator.lab.effects.effect import Motion, MotionRows
@@ -34,7 +32,7 @@ def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[
     stack = dataset.stack([_columns(trial.motion, trial.signals.rate_hz) for trial in dataset.trials])
     named = dict(zip(NAMES, stack.T, strict=True))
     named |= _far_side_weight(dataset)
-    named |= _known_stiffness(dataset, STIFFNESS_ABOUT)
+    named |= _known_stiffness(dataset)
     if dataset.facts.backlash_rad:
         gaps = [(share * dataset.facts.backlash_rad, TOLD_ARM) for share in KNOWN_PLAY.values()]
         found = dataset.unchecked_columns(backlash.EFFECT, gaps)
@@ -44,12 +42,12 @@ def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[
     return named
 
 
-def _known_stiffness(dataset: Dataset, shares: Sequence[tuple[float, float]]) -> dict[str, FloatArray]:
-    """What the gear carries less for winding up, for shares of the stiffness that is known and dampings."""
+def _known_stiffness(dataset: Dataset) -> dict[str, FloatArray]:
+    """What the gear carries less for winding up, about the stiffness that is known; none where it is not."""
     known_hz = elasticity.known_hz(dataset.facts)
     if known_hz is None:
         return {}
-    shapes = [(known_hz * np.sqrt(share), damping, TOLD_ARM) for share, damping in shares]
+    shapes = [(known_hz * np.sqrt(share), damping, TOLD_ARM) for share, damping in STIFFNESS_ABOUT]
     found = dataset.unchecked_columns(elasticity.EFFECT, shapes)
     return {f"known_stiffness_{index}": columns[:, 0] for index, columns in enumerate(found)}
 

@@ -53,7 +53,7 @@ class StopToStop:
         columns, power = self._most()
         other = float(np.median(np.diag(covariance(columns / np.sqrt(power))))) if len(power) else 0.0
         if other <= 0.0:
-            return np.ones(int(self.index.max()) + 1)
+            return np.ones_like(self.power)
         factor: FloatArray = 1.0 / np.sqrt(1.0 + variance * self.power / other)
         return factor
 

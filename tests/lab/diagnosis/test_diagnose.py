@@ -134,8 +134,8 @@ def test_what_an_effect_with_memory_leaves_in_steady_sliding_is_told(monkeypatch
     made = recordings(Joint(extra=late), seed=4)
     asked = []
 
-    def what_remains(fit, gathered, name):
-        asked.append((name in fit.names, gathered.show_in))
+    def what_remains(fit, show_in, name):
+        asked.append((name in fit.names, show_in))
         return left
 
     monkeypatch.setattr(diagnose_module, "what_remains", what_remains)
@@ -266,7 +266,7 @@ def with_luck(monkeypatch, p_value):
         monkeypatch.setattr(
             four_families,
             name,
-            lambda *given, whole=whole, **named: replace(whole(*given, **named), p_value=p_value),
+            lambda *given, whole=whole, **named: replace(whole(*given, **named), p_value=p_value, chance=None),
         )
     return diagnosis_of(recordings(Joint(extra=PLANTED["weight_friction"]), trials=plans((0.0, 0.25)), seed=3))
 

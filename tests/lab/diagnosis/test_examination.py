@@ -13,7 +13,7 @@ from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.gain import Gain
 from compensator.lab.screening.base import Block
-from compensator.lab.screening.evidence import Evidence, Screening
+from compensator.lab.screening.evidence import Evidence
 
 
 @pytest.mark.parametrize(
@@ -111,4 +111,4 @@ def test_the_shape_that_fits_best_speaks_for_its_effect_whether_it_can_be_or_not
         Evidence(Block("backlash", column[:, None], 0, 15, shape), score, score, 0.001, column)
         for shape, score in shapes
     ]
-    assert examination.best_shapes(Screening(evidence, 0.001)) == [evidence[0]]
+    assert examination.best_shapes(evidence) == [evidence[0]]

@@ -14,7 +14,7 @@ from compensator.lab.diagnosis import search as search_module
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.diagnosis.search import Search, search
-from compensator.lab.diagnosis.wording import answer_in_words
+from compensator.lab.diagnosis.wording import missing_in_words
 from compensator.lab.effects.catalogue import candidates, default_effects, effect_named
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
@@ -155,7 +155,7 @@ def test_what_was_dropped_is_not_named_again_before_the_model_has_something_else
 def test_a_gain_that_other_trials_do_not_bear_out_is_said_to_be_likely_only(low, said):
     found = diagnosis_of("spring", seed=7)
     best = replace(found.candidates[0], gain=Gain(0.1, low, 0.2), rivals=())
-    sentence = answer_in_words("missing", 0.001, [best], None)
+    sentence = missing_in_words(best, 0.001)
     assert said in sentence
     assert ("but not for sure" in sentence) == (low < 0.0)
     code = conclusion_of(replace(found, candidates=[best])).code

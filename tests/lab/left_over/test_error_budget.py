@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.left_over import left_over, swinging
-from compensator.lab.left_over.error_budget import MOST, PLAIN, WANDERING_BESIDE_A_NAME
+from compensator.lab.left_over.error_budget import PLAIN, WANDERING_BESIDE_A_NAME
 from compensator.lab.left_over.orders import line_of
 from compensator.lab.left_over.wandering import wandering_of
 from compensator.lab.model.fit import fit_model
@@ -15,6 +15,7 @@ from compensator.lab.screening.gathering import gather, gather_curves
 from tests.lab.left_over.judged import fitted
 from tests.lab.synthetic import Joint, Law
 
+MOST = 0.01  # of complete models
 ROUGH = 0.02  # of Coulomb friction, root mean square
 LENGTH_RAD = 0.05  # over which it is alike
 
@@ -35,7 +36,7 @@ def rough(seed: int) -> Law:
 def test_a_complete_model_is_not_alarmed_about_more_often_than_the_budget_says():
     parts = [getattr(PLAIN, one.name) for one in fields(PLAIN)]
     assert all(part > 0.0 for part in parts)
-    assert sum(parts) < PLAIN.whole <= MOST
+    assert sum(parts) + PLAIN.wandering <= MOST  # wandering is asked twice: of dry friction, and of a constant force
 
 
 def test_each_question_has_its_own_part(monkeypatch):

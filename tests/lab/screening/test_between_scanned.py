@@ -32,7 +32,7 @@ def scanned():
 def test_a_shape_is_found_between_those_scanned_and_pays_for_having_been_looked_for(scanned):
     found = with_shapes_between(scanned).named[-1]
     assert found.name == "elasticity"
-    assert found.key[0] == pytest.approx(50.0 / (2.0 * np.pi), rel=0.05)
+    assert found.shape[0] == pytest.approx(50.0 / (2.0 * np.pi), rel=0.05)
     assert score_of(scanned.bases, found) > best_score(scanned, "elasticity") + 10.0
     assert found.scanned > next(block.scanned for block in scanned.named if block.name == "elasticity")
 

@@ -62,7 +62,7 @@ def test_every_effect_that_is_not_in_the_model_is_a_candidate_in_all_its_shapes(
     assert set(gathered.left_out) == {*of_voltages, *hidden, "warm_up", "encoder_eccentricity"}
     memory = gather(gathered.fit, "moving")
     assert {block.name for block in memory.named} == {n for n, e in catalogue().items() if e.rows == "moving"}
-    orders = [block.key for block in gathered.named if block.name == "position_periodic_friction"]
+    orders = [block.shape for block in gathered.named if block.name == "position_periodic_friction"]
     assert orders == [(float(order),) for order in range(2, 31)]
     assert {block.scanned for block in gathered.named if block.name == "position_periodic_friction"} == {29}
 

@@ -44,7 +44,7 @@ def test_a_planted_column_is_found_and_named(seed):
 def test_the_score_is_the_gain_in_likelihood_less_its_price():
     bases, blocks = problem(1, planted=0.25)
     base = bases[0]
-    scanned = [Block("c4", blocks[4].columns, 0, 5, key=(1.0,))]
+    scanned = [Block("c4", blocks[4].columns, 0, 5, (1.0,))]
     one, many = (screen(bases, some, STRETCH).evidence[0] for some in ([blocks[4]], scanned))
     assert one.score - many.score == pytest.approx(2 * np.log(5))
     full = np.column_stack([base.basis, blocks[4].columns])
