@@ -116,6 +116,7 @@ def test_the_token_is_shown_once(command, monkeypatch):
     shown = [command("serve", "--port", str(_free_port())).stdout for _ in range(2)]
     assert "it is shown this once" in shown[0]
     assert "was shown at the first start" in shown[1]
+    assert "friction-bench --store sqlite:" in " ".join(shown[1].split()), "another store has other tokens"
 
 
 def test_beyond_loopback_with_a_token_of_the_store(command, monkeypatch):
