@@ -110,14 +110,24 @@ def conditions(values: Mapping[str, object]) -> str:
     return ", ".join(f"{key}={text(value)}" for key, value in values.items())
 
 
+def refuse_taken(*paths: Path) -> None:
+    """Check all places before anything is written.
+
+    Raises:
+        FileError: a place is taken.
+    """
+    for path in paths:
+        if path.exists():
+            raise FileError(f"{path}: is there already; name another file, or remove it")
+
+
 def write_whole(path: Path, chunks: Iterable[bytes]) -> None:
     """Write a file: all of it appears, or nothing.
 
     Raises:
         FileError: the place is taken or cannot be written.
     """
-    if path.exists():
-        raise FileError(f"{path}: is there already; name another file, or remove it")
+    refuse_taken(path)
     unfinished = path.with_name(f".{path.name}.part")
     try:
         with unfinished.open("wb") as file:

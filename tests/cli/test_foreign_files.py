@@ -21,6 +21,25 @@ def test_a_guess_is_shown_written_and_can_be_imported(command, tmp_path):
     assert json.loads(made.stdout)["rows"] == 400
 
 
+@pytest.mark.parametrize(
+    ("words", "taken", "said"),
+    [
+        ([], "rig.toml", "rig.toml: is there already"),
+        ([], "mapping.toml", "mapping.toml: is there already"),
+        (["--mapping", "rig.toml"], "", "the rig is written there; name another file with --mapping"),
+    ],
+)
+def test_where_one_file_cannot_be_written_none_is(command, tmp_path, words, taken, said):
+    (tmp_path / "log.csv").write_bytes(FILES["plain"].data)
+    if taken:
+        (tmp_path / taken).write_text("mine")
+    before = {path.name for path in tmp_path.iterdir()}
+    guessed = command("import", "--guess", "log.csv", *words)
+    assert guessed.exit_code == 3
+    assert said in " ".join(guessed.stderr.split())
+    assert {path.name for path in tmp_path.iterdir()} == before
+
+
 def test_load_and_rig_are_told_by_what_a_guess_left_as_comments(command, tmp_path):
     data = FILES["german excel, utf-8 mark"].data
     for name in ("log1.csv", "log2.csv"):

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.cli.output import say, table, write_whole
+from bench.cli.output import FileError, refuse_taken, say, table, write_whole
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.config.rig import Rig
@@ -47,9 +47,16 @@ def show(guess: "Guess", notes: tuple[str, ...]) -> None:
 
 
 def write_guess(guess: "Guess", rig: "Rig | None", mapping_file: Path, rig_file: Path) -> None:
-    """The mapping as a file, and the rig where the files have none."""
+    """The mapping as a file, and the rig where the files have none: both, or neither.
+
+    Raises:
+        FileError: a place is taken or cannot be written, or both files would have one name.
+    """
     from bench.recording_set.guess import mapping_text, rig_text
 
+    if rig is not None and mapping_file == rig_file:
+        raise FileError(f"{mapping_file}: the rig is written there; name another file with --mapping")
+    refuse_taken(mapping_file, *(() if rig is None else (rig_file,)))
     head = ("written by friction-bench import --guess; read it before you use it", *guess.notes)
     write_whole(mapping_file, [mapping_text(guess.mapping, head, guess.files).encode()])
     say(f"written: {mapping_file}")
