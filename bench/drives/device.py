@@ -1,12 +1,13 @@
 """The options that every `friction-bench simulate-device KIND` has beside its own."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Container
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
 import typer
 
+from bench.config.drives.simulated_device import Simulated
 from bench.config.toml_text import read_toml
 from bench.errors import ConfigurationError
 from bench.json_types import Values
@@ -17,6 +18,9 @@ Interface = Annotated[
 ]
 Channel = Annotated[str, typer.Option(help="Of the interface: vcan0 ...")]
 Made = TypeVar("Made")
+
+# [s], of a drive whose time waits for the host: a shorter watchdog would not have acted yet when it is tried
+PATIENT_LIMITS = {"watchdog_s": 1.0, "answer_timeout_s": 0.3, "answer_s": 0.3}
 
 
 @dataclass(frozen=True)
@@ -39,7 +43,8 @@ class DeviceOptions:
             max=1.0,
             metavar="SECONDS",
             help="For a machine that is busy with other work, whose host is late at times: while the motor is powered "
-            "or the joint moves, the drive's time goes no further than this without a word of the host.",
+            "or the joint moves, the drive's time goes no further than this without a word of the host. The printed "
+            "section has the time limits for it.",
         ),
     ] = None
     json: Annotated[bool, typer.Option("--json", help="Print the addresses as one line of JSON, for programs.")] = False
@@ -58,6 +63,18 @@ class DeviceOptions:
             "side_port": self.side_port,
             "patience_s": self.patience,
         }
+
+    def with_limits(self, simulated: Simulated, keys: Container[str]) -> Simulated:
+        """The same, with the time limits of a patient device in its section; limits of the device itself stay.
+
+        Args:
+            simulated: as its kind has made it.
+            keys: that `[drive]` of the kind has.
+        """
+        if self.patience is None:
+            return simulated
+        limits = {name: value for name, value in PATIENT_LIMITS.items() if name in keys}
+        return replace(simulated, drive=simulated.drive | limits | simulated.drive)
 
     def _plant_tables(self) -> Values:
         if self.plant is None:

@@ -6,6 +6,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from bench.cli.operation import simulate_device
+from bench.config.drives.registry import drive_kind
+from bench.drives.device import PATIENT_LIMITS
 from sim_backend.devices import wall_time
 from sim_backend.devices.canopen.serve import CanOpenSettings, serve_canopen
 from sim_backend.devices.modbus.serve import ModbusSettings, serve_modbus
@@ -89,3 +92,24 @@ def test_a_word_of_the_host_is_heard_on_every_wire(monkeypatch, kind):
             with open(device.path, "r+b", buffering=0) as wire:
                 wire.write(b"\r")
                 assert heard.wait(5.0)
+
+
+@pytest.mark.parametrize(
+    ("words", "limits"),
+    [
+        (("roboclaw", "--patience", "0.02"), {"watchdog_s": 1.0, "answer_timeout_s": 0.3}),
+        (("modbus", "--patience", "0.02"), {"watchdog_s": 1.0, "answer_timeout_s": 0.3}),
+        (("canopen", "--patience", "0.02"), {"watchdog_s": 1.0, "answer_s": 0.3}),
+        (("feetech", "--patience", "0.02"), {"answer_timeout_s": 0.3}),  # it has no watchdog
+        (("odrive", "--watchdog", "0.5", "--patience", "0.02"), {"watchdog_s": 0.5, "answer_timeout_s": 0.3}),
+        (("roboclaw",), {}),
+    ],
+)
+def test_the_section_has_the_time_limits_for_its_patience(monkeypatch, words, limits):
+    started = []
+    monkeypatch.setattr(simulate_device, "_serve", lambda simulated, _json: started.append(simulated))
+    simulate_device._command(simulate_device._kinds()[words[0]]).main(list(words[1:]), standalone_mode=False)
+    with started[0].device:
+        drive = started[0].drive
+    assert {name: drive[name] for name in PATIENT_LIMITS if name in drive} == limits
+    drive_kind(words[0]).settings.model_validate(drive)

@@ -67,7 +67,8 @@ def _command(kind: "DriveKind[Any]") -> Any:
 
     def command(**values: Any) -> None:
         options = DeviceOptions(**{name: values.pop(name) for name in common})
-        _serve(simulate(**values, options=options), options.json)
+        simulated = simulate(**values, options=options)
+        _serve(options.with_limits(simulated, kind.settings.model_fields), options.json)
 
     _take_options(command, simulate, DeviceOptions)
     made = typer.Typer(add_completion=False, rich_markup_mode="markdown", pretty_exceptions_enable=False)
