@@ -12,6 +12,7 @@ from typer.core import TyperGroup
 import bench
 from bench.cli.command_group import ListedCommand
 from bench.cli.commands import COMMANDS
+from bench.config.drives.registry import drive_kinds
 from tests.docs.documents import DOCUMENTS, GENERATED, commands_in, name_of, text_of
 from tests.paths import ROOT
 
@@ -74,6 +75,19 @@ def test_commands_and_options_are_there(place: str, line: str) -> None:
         assert command is not None, place
     known = {"--help"} | {option for parameter in command.params for option in parameter.opts}
     assert {word.partition("=")[0] for word in words if word.startswith("--")} <= known, place
+
+
+GUIDES = [name_of(ROOT / "docs" / "how-to" / f"{kind}.md") for kind in drive_kinds() if kind != "sim"]
+
+
+@pytest.mark.parametrize("guide", [*GUIDES, "docs/how-to/real-drive.md"])
+def test_the_first_trial_on_a_real_drive_is_slow(guide: str) -> None:
+    trials = [line for place, line in COMMAND_LINES if place == guide and " run steps" in line]
+    assert trials
+    assert all("--fastest-rad-s 1" in line for line in trials)
+    text = text_of(ROOT / guide)
+    assert "out at 0.5 to 1 rad/s, back at `motion.speed_rad_s`" in " ".join(text.split())
+    assert "tand clear" in text
 
 
 def test_the_release_is_described() -> None:
