@@ -259,6 +259,7 @@ def check_modes(described: Description) -> None:
     if not described.modes & {Mode.CURRENT, Mode.DUTY}:
         raise CommissionError(
             f"drive '{described.device}': modes: found {', '.join(sorted(mode.value for mode in described.modes))}; "
-            "commissioning pushes with a current or a duty: put it on the bench step by step, as "
-            "docs/how-to/real-drive.md says, with the torque constant of its maker"
+            "commissioning pushes with a current or a duty: put it on the bench step by step. Write its section and "
+            "its maker's rig.motor.torque_constant_n_m_a into bench.toml. "
+            "Next: friction-bench --config bench.toml doctor"
         )

@@ -2,7 +2,11 @@
 
 import importlib
 import json
+from types import SimpleNamespace
 
+import pytest
+
+from bench.cli.lab.diagnosis_tables import after_search, next_step
 from tests.service.recorded_joint import recording_set_zip
 
 
@@ -128,6 +132,24 @@ def test_each_step_of_a_study_names_the_next(command, tmp_path):
     assert command("study", "add", 1, "viscous_asymmetry").exit_code == 0
     again = command("study", "diagnose", 1, "--model", 1).stdout.splitlines()
     assert again[-1] == "next: friction-bench study add 1 viscous_asymmetry --model 1"
-    assert command("study", "diagnose", 1).stdout.splitlines()[-1] == "next: docs/how-to/no-name.md says what to do"
+    keep = "next: friction-bench study report 1 --html study-1.html"
+    assert command("study", "diagnose", 1).stdout.splitlines()[-1] == keep
     searched = command("study", "search", 1, "--model", 1).stdout.splitlines()
-    assert searched[-1] == "next: friction-bench study report 1 --html study-1.html"
+    assert searched[-1] == keep
+
+
+@pytest.mark.parametrize(
+    ("verdict", "code", "slight", "command"),
+    [
+        ("data-problem", "data-problem", False, "study new NAME --experiment NUMBER --leave-out TRIAL"),
+        ("nothing", "nothing", False, "study report 3 --html study-3.html"),
+        ("missing", "missing", True, "study report 3 --html study-3.html"),
+        ("nothing", "too-short", False, "study coverage 3"),
+        ("nothing", "unexplained", False, "study coverage 3"),
+    ],
+)
+def test_where_no_effect_is_offered_the_next_step_is_a_command(verdict, code, slight, command):
+    found = SimpleNamespace(study_id=3, verdict=verdict, conclusion=SimpleNamespace(code=code), slight=slight)
+    assert after_search(found) == f"next: friction-bench {command}"
+    found.classes, found.provisional = [], None
+    assert next_step(found, None) == f"next: friction-bench {command}"

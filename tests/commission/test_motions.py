@@ -83,7 +83,7 @@ def test_cycles_that_move_no_joint_are_not_counted(monkeypatch):
 @pytest.mark.parametrize("modes", [{Mode.TORQUE}, {Mode.POSITION}])
 def test_a_drive_that_takes_neither_a_current_nor_a_duty_is_refused_before_anything_is_asked(modes):
     described = SimpleNamespace(device="can0 node 5", modes=frozenset({Mode.OFF, *modes}))
-    with pytest.raises(CommissionError, match=r"can0 node 5.*modes: found .*(torque|position).*step by step"):
+    with pytest.raises(CommissionError, match=r"can0 node 5.*modes: found .*(torque|position).*step by step.*doctor"):
         check_modes(described)
     check_modes(SimpleNamespace(device="can0 node 5", modes=frozenset({Mode.DUTY, *modes})))
 

@@ -1,5 +1,6 @@
 """What the documents name is there: files, places, targets of make, commands and their options, versions."""
 
+import ast
 import re
 import shlex
 from pathlib import Path
@@ -42,6 +43,25 @@ def test_documents_that_programs_name_are_there(folder: str) -> None:
     for file in (ROOT / folder).rglob("*.py"):
         for path in re.findall(r"\bdocs/[\w/-]+\.md", file.read_text(encoding="utf-8")):
             assert (ROOT / path).is_file(), (name_of(file), path)
+
+
+def _texts_of(file: Path) -> list[str]:
+    """What a program may print: its strings, and of commands the docstrings, too, which are their help."""
+    nodes = list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+    is_help = file.name == "device.py" or "cli" in file.parts
+    remarks = set() if is_help else {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
+    texts = [node for node in nodes if isinstance(node, ast.Constant) and id(node) not in remarks]
+    return [node.value for node in texts if isinstance(node.value, str)]
+
+
+@pytest.mark.parametrize("folder", ["bench", "compensator", "drivers", "sim_backend", "web"])
+def test_nothing_printed_sends_a_user_to_a_document(folder: str) -> None:
+    """Users of the wheel have no folder of documents."""
+    texts = {name_of(file): _texts_of(file) for file in (ROOT / folder).rglob("*.py")}
+    pages = [file for end in ("js", "html") for file in (ROOT / folder).rglob(f"*.{end}")]
+    texts |= {name_of(file): re.sub(r"(?m)//.*$", "", text_of(file)).splitlines() for file in pages}
+    assert texts
+    assert [(name, text) for name, each in texts.items() for text in each if re.search(r"\bdocs/.+\.md", text)] == []
 
 
 @pytest.mark.parametrize("file", DOCUMENTS, ids=name_of)

@@ -14,9 +14,6 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.study.suggestion.suggested import Suggested
 
 
-_NO_NAME = "next: docs/how-to/no-name.md says what to do"
-
-
 def diagnosis(found: "Diagnosis") -> None:
     """The verdict and the ranking."""
     say(found.sentence)
@@ -62,16 +59,23 @@ def next_step(found: "Diagnosis", model_id: int | None) -> str:
     named = [] if found.slight else [name for members in found.classes for name in members.effects]
     offered = named or ([found.provisional.effect] if found.provisional else [])
     if not offered:
-        return _NO_NAME
+        return _without_a_name(found)
     beside = "" if model_id is None else f" --model {model_id}"
     return f"next: friction-bench study add {found.study_id} {offered[0]}{beside}"
 
 
 def after_search(found: "Searched") -> str:
     """What to do after a search, on one line."""
+    return _without_a_name(found)
+
+
+def _without_a_name(found: "Diagnosis | Searched") -> str:
+    """The next command where no effect is offered: correct the data, keep what was found, or record more."""
+    if found.verdict == "data-problem":
+        return "next: friction-bench study new NAME --experiment NUMBER --leave-out TRIAL"
     if found.slight or found.conclusion.code in ("nothing", "not-confirmed"):
         return f"next: friction-bench study report {found.study_id} --html study-{found.study_id}.html"
-    return _NO_NAME
+    return f"next: friction-bench study coverage {found.study_id}"
 
 
 def search(found: "Searched") -> None:

@@ -63,7 +63,7 @@ def scan(place: SerialPlace) -> Iterator[FoundDrive]:
 
     for baud_rate in place.baud_rates or _BAUD_RATES:
         for found in answering(place.port, baud_rate, SCS, _IDS):
-            yield FoundDrive("Feetech servo; IT HAS NO WATCHDOG, see the guide before you accept that", {
+            yield FoundDrive("Feetech servo; IT HAS NO WATCHDOG: it goes on where this host is silent", {
                 "kind": "feetech", "port": place.port, "baud_rate": baud_rate, "servo_id": found.servo_id,
                 "accept_no_watchdog": False,
             })  # fmt: skip

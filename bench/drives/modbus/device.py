@@ -20,7 +20,7 @@ def simulate(
     *,
     options: DeviceOptions,
 ) -> Simulated:
-    """A drive on Modbus RTU or TCP; docs/modbus-map.md is its manual."""
+    """A drive on Modbus RTU or TCP, by one of the register maps that come with the package."""
     from sim_backend.devices.modbus.serve import ModbusSettings, serve_modbus
 
     settings = ModbusSettings(
