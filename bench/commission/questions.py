@@ -24,6 +24,7 @@ class Question:
         unit: of the answer; "" for a number.
         least, most: what is allowed.
         optional: whether "not known" is an answer.
+        deed: whether it is about what hands have just done: an answer known before does not stand for the deed.
     """
 
     key: str
@@ -32,6 +33,7 @@ class Question:
     least: float
     most: float
     optional: bool = False
+    deed: bool = False
 
     def check(self, answer: float | None) -> float | None:
         """The answer, if it can be.
@@ -55,7 +57,12 @@ COUNTS = Question("counts_per_turn", "How many counts does the encoder give a mo
 MOTOR_CURRENT = Question("motor_current_a", "What is the highest current that the motor may have?", "A", 0.02, 500.0)
 LOAD = Question("load_kg", "What weight can you hang on the arm, the heaviest that it is to carry?", "kg", 0.005, 50.0)
 FIRST_LOAD = Question(
-    "first_load_kg", "Hang another weight that you know, as a trial, and stand clear. How heavy is it?", "kg", 0.0, 50.0
+    "first_load_kg",
+    "Hang another weight that you know, as a trial, and stand clear. How heavy is it?",
+    "kg",
+    0.0,
+    50.0,
+    deed=True,
 )
 RESISTANCE = Question("resistance_ohm", "What is the resistance of the motor's winding?", "ohm", 1e-3, 1e4)
 BACK_EMF = Question("back_emf_v_s_rad", "What is the motor's back-EMF (torque) constant?", "V s/rad", 1e-5, 1e2)
@@ -67,6 +74,7 @@ HAND_ANGLE = Question(
     "degrees",
     20.0,
     180.0,
+    deed=True,
 )
 
 

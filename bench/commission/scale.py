@@ -3,13 +3,14 @@
 from dataclasses import dataclass
 from math import pi, radians
 
-from bench.commission.questions import CommissionError, Known
+from bench.commission.questions import GEAR_RATIO, CommissionError, Known
 
 LEAST_COUNTS = 200.0  # between the two positions of the arm
 EYE_RAD = radians(3.0)  # how well an angle is seen
 AGREES_SHARE = 0.08  # of the counts of a joint turn; a level arm is seen to 3 of 90 degrees, and so is "straight down"
 QUADRATURE = (4.0, 0.25)  # lines taken for counts, and the other way round
 FITS_SHARE = 0.1
+LEAST_RATIO = (1.0 - FITS_SHARE) * GEAR_RATIO.least  # seen by eye; an arm that nobody turned, and that swings, has less
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +55,7 @@ def scale_of(down_counts: float, turned_counts: float, angle_rad: float, known: 
         told_by_drive: counts of a motor turn by the drive's own objects; NaN where it tells none.
 
     Raises:
-        CommissionError: the count did not move.
+        CommissionError: the count did not move, or less than any gear lets it.
     """
     way = turned_counts - down_counts
     if abs(way) < LEAST_COUNTS:
@@ -66,6 +67,12 @@ def scale_of(down_counts: float, turned_counts: float, angle_rad: float, known: 
     per_turn = abs(way) / angle_rad * 2.0 * pi
     ends = sorted(abs(way) / (angle_rad + side * EYE_RAD) * 2.0 * pi for side in (-1.0, 1.0))
     ratio, counts, sentence = _shared_out(per_turn, known, told_by_drive)
+    if ratio < LEAST_RATIO:
+        raise CommissionError(
+            f"gear.ratio is {ratio:.2g} by a count that moved by {way:.0f} while the arm was turned by "
+            f"{angle_rad:.2f} rad; allowed is at least {GEAR_RATIO.least:g}. Was the arm turned so far, and is "
+            f"sensor.counts_per_turn {counts:g}? Correct what is wrong, then start again"
+        )
     return Scale(ratio, counts, 1 if way > 0.0 else -1, down_counts, ends[0], ends[1], sentence)
 
 

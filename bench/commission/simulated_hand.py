@@ -1,5 +1,6 @@
 """The person's hands at a simulated device: turns the arm and hangs the loads; the rest is still asked."""
 
+from dataclasses import replace
 from math import pi
 
 from bench.commission.questions import Person, Question
@@ -27,7 +28,7 @@ class SimulatedHand:
         if question.key == "hand_angle_deg":
             self._joint.hold_arm(pi / 2.0)
             return 90.0
-        answer = self._person.number(question)
+        answer = self._person.number(replace(question, deed=False))  # these hands do it
         if question.key == "first_load_kg" and answer:
             self._joint.hang_load(answer, balanced=False)
         return answer

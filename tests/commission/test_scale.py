@@ -59,6 +59,14 @@ def test_a_count_that_stands_is_refused_with_what_may_be_wrong():
         _scale(KNOWN, turned=3.0)
 
 
+def test_an_arm_that_only_swung_is_not_taken_for_one_that_was_turned():
+    with pytest.raises(
+        CommissionError, match=r"gear\.ratio is 0\.39 .*moved by 400 .*1\.57 rad; allowed is at least 1"
+    ):
+        _scale(KNOWN, turned=400.0)
+    assert _scale(replace(KNOWN, gear_ratio=100.0), turned=0.98 * 1024.0).gear_ratio == pytest.approx(0.98)
+
+
 def test_answers_are_checked_with_their_unit():
     with pytest.raises(CommissionError, match=r"load_kg is 0\.001 kg; allowed is 0\.005 \.\. 50 kg"):
         LOAD.check(0.001)

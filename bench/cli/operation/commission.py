@@ -101,7 +101,7 @@ class _Terminal:
 
     def number(self, question: "Question") -> float | None:
         if question.key in self._known:
-            return float(self._known[question.key])
+            return self._done_as_known(question, float(self._known[question.key]))
         hint = "; Enter where it is not known" if question.optional else ""
         unit = f" [{question.unit}]" if question.unit else ""
         while True:
@@ -112,6 +112,17 @@ class _Terminal:
                 return float(typed)
             except ValueError:
                 say(f"'{typed}' is no number.")
+
+    def _done_as_known(self, question: "Question", answer: float) -> float | None:
+        """An answer from the file; where it is about a deed, once the person has done that (a load of 0 is none)."""
+        from bench.commission.questions import CommissionError
+
+        checked = question.check(answer)
+        if question.deed and checked:
+            known = f"The answers say {checked:g} {question.unit}."
+            if not self.done(question.key, f"{question.sentence} {known}"):
+                raise CommissionError(f"given up at: {question.sentence}")
+        return checked
 
     def done(self, key: str, sentence: str) -> bool:  # noqa: ARG002
         typed: str = typer.prompt(f"{sentence} Enter when done, q to give up", default="", show_default=False, err=True)
