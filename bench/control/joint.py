@@ -75,7 +75,7 @@ class ControlledJoint:
         self.reading = self.reading._replace(time_s=0.0)
 
     def is_stale(self) -> bool:
-        """Whether something in the last sample is older than allowed."""
+        """Whether something in the last sample is older than allowed, or would soon be."""
         return self._guard.is_stale(self.reading.sample)
 
     def coast(self) -> None:

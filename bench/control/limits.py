@@ -8,6 +8,8 @@ from bench.config.sections import Limits
 from bench.errors import LimitTrip, quantity_message
 from drivers.contract import ALL_NEW, Sample
 
+FRESH_SHARE = 0.5  # of the allowed age: what is nearly too old at the beginning is so before its turn to be asked comes
+
 
 class Violation(NamedTuple):
     """One quantity outside its limits: what it is called, its value, what is allowed, the unit."""
@@ -73,8 +75,9 @@ class Guard:
         raise LimitTrip(quantity_message(*violation))
 
     def is_stale(self, sample: Sample) -> bool:
-        """Whether something in a sample is older than allowed."""
-        return not sample.age_s <= self.limits.sample_age_s or _slow_age_s(sample) > self.limits.slow_sample_age_s
+        """Whether something in a sample is older than allowed, or would soon be, in what is asked for seldom."""
+        slow_s = FRESH_SHARE * self.limits.slow_sample_age_s
+        return not sample.age_s <= self.limits.sample_age_s or _slow_age_s(sample) > slow_s
 
     def _violations(
         self, sample: Sample, velocity_rad_s: float, current_a: float, target_rad: float

@@ -117,6 +117,19 @@ def test_a_drive_that_nobody_asked_for_a_while_is_asked_until_it_is_fresh(setup)
     assert ran.rows["time_s"][0] == pytest.approx(PERIOD_S)  # the trial begins with the fresh sample
 
 
+def _old_until(exchanges):
+    """As after the silence in which a watchdog of 1 s is tried: 2 s are allowed."""
+    return lambda cycle, sample: sample._replace(
+        ages=Ages(supply_s=1.9 + PERIOD_S * cycle if cycle < exchanges else PERIOD_S * (cycle - exchanges))
+    )
+
+
+@on_each
+def test_what_is_nearly_too_old_is_asked_for_before_motion(setup):
+    ran = run(setup, FakeDrive(alter=_old_until(60)), push(setup))
+    assert ran.outcome.outcome == "completed", ran.outcome.reason
+
+
 @on_each
 def test_a_drive_that_stays_stale_is_refused(setup):
     drive = FakeDrive(alter=_stale_for(100_000))
