@@ -56,6 +56,21 @@ def test_what_must_be_named_and_what_must_not() -> None:
     assert _figure(results, "over the oracle's, mean").measured == pytest.approx(1.05)
 
 
+def _complete_with(p_value: float) -> Result:
+    one = _result("complete", "", (), 0.0, 0.0)
+    assert one.answer is not None
+    return replace(one, answer=replace(one.answer, p_value=p_value))
+
+
+def test_p_values_of_complete_models_are_held_against_a_uniform_distribution() -> None:
+    even = (np.arange(200) + 0.5) / 200.0
+    honest = _figure([_complete_with(p) for p in even], "if they are uniform")
+    cautious = _figure([_complete_with(min(1.0, 5.0 * p)) for p in even], "if they are uniform")
+    assert honest.reached
+    assert honest.items == 200
+    assert not cautious.reached
+
+
 def test_a_flag_beside_other_laws_of_friction_is_right() -> None:
     flagged = _result("single", "spring", ("spring",), 1.0, 9.0, unknown=True)
     results = [flagged, replace(flagged, laws=0.05), replace(flagged, laws=0.2)]

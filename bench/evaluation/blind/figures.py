@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from math import isnan, nan
 
 import numpy as np
+from scipy.stats import kstest
 
 from bench.evaluation.blind.calibration import interval
 from bench.evaluation.blind.result import LabAnswer, Result, Standing
@@ -62,6 +63,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
     promised = [one for one in settled if one.settled is not None and one.settled.promised >= MUST_NAME]
     return [
         *_false_alarms(answered),
+        _uniform(answered),
         _named_by_other_laws(answered),
         _share("named first where d' >= 6", 0.95, strong, _is_right),
         _share("truth among the first three, r >= 0.15", 0.98, ranked, _among_three),
@@ -109,6 +111,14 @@ def _false_alarms(answered: Sequence[Result]) -> list[Figure]:
         _share(words[name], asked, [one for one in answered if one.family == name], alarm, at_most=True)
         for name, asked in families.items()
     ]
+
+
+def _uniform(answered: Sequence[Result]) -> Figure:
+    """Of complete models every p-value is as likely as every other (Kolmogorov, Smirnov)."""
+    found = [_answer(one).p_value for one in answered if one.family == "complete"]
+    chance = float(kstest(found, "uniform").pvalue) if found else nan
+    what = "chance of such p-values of complete models, if they are uniform"
+    return Figure(what, "at least 5 %", chance, nan, nan, len(found), chance >= 0.05)
 
 
 def _named_by_other_laws(answered: Sequence[Result]) -> Figure:
