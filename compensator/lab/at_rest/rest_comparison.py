@@ -70,6 +70,11 @@ class RestComparison:
         return max(self.above.largest, self.below.largest)
 
     @property
+    def is_friction(self) -> bool:
+        """Whether both ends are violated for sure: static friction is more than the model has."""
+        return max(self.above.chance, self.below.chance) <= SIGNIFICANT
+
+    @property
     def is_evidence(self) -> bool:
         """Whether the violations are no chance."""
         return min(self.above.chance, self.below.chance) <= SIGNIFICANT
@@ -143,15 +148,14 @@ def at_rest_in_words(found: RestComparison, unit: str) -> str:
             f"{beyond}: no more than what the model leaves while the joint slides, so that rest tells nothing; mend "
             "the model there first."
         )
-    both = max(found.above.chance, found.below.chance) <= SIGNIFICANT
     surest = min(found.above, found.below, key=lambda side: side.chance)
-    where = "on both sides" if both else f"{'above' if surest is found.above else 'below'} only"
+    where = "on both sides" if found.is_friction else f"{'above' if surest is found.above else 'below'} only"
     told = (
         f"At rest: of {found.windows} stretches of 0.1 s, {found.outside:.1%} lie beyond what friction holds, {where}, "
         f"by up to {found.largest:.3g} {unit} (trial '{surest.trial}' at {surest.time_s:.3g} s; "
         f"{chance_in_words(surest.chance)})"
     )
-    if both:
+    if found.is_friction:
         # starts that tell the static friction are ramps, or as good
         todo = (
             "diagnose it from the starts that are there: it may grow with rest, load or rate"

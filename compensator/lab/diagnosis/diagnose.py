@@ -9,7 +9,7 @@ from collections.abc import Collection
 from math import nan
 
 from compensator.lab import progress
-from compensator.lab.at_rest.rest_comparison import at_rest_in_words, compare_at_rest
+from compensator.lab.at_rest.rest_comparison import RestComparison, at_rest_in_words, compare_at_rest
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.alien_effort import alien_effort
 from compensator.lab.diagnosis.answer import Answer
@@ -61,21 +61,27 @@ def diagnose(fit: Fit) -> Diagnosis:
         return _data_problem(fit, alien.text)
     others = [answer for answer in families.in_order if answer is not first]
     left = _left_in_sliding(fit, first) if first is families.memory else []
+    rest = compare_at_rest(fit)
+    at_rest = [] if rest is None or not rest.is_evidence else [_at_rest(rest, fit.dataset.effort_definition.unit)]
+    # what sliding leaves no room for, rest may: static friction beyond the model's is something that is missing
+    sticks = first.verdict == "nothing" and rest is not None and rest.is_friction
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
     notes = [*first.notes, *left, *(_also_missing(answer) for answer in others if answer.verdict == "missing")]
     notes += [note for answer in others if answer is families.rest for note in answer.notes]
     return Diagnosis(
         verdict=first.verdict,
-        sentence=first.sentence + _hidden_rivals(first, fit, families.left_out),
+        sentence=(f"{at_rest[0].text} In motion: " if sticks else "")
+        + first.sentence
+        + _hidden_rivals(first, fit, families.left_out),
         p_value=first.p_value,
         classes=_classes(ranked),
         candidates=ranked,
         driver=first.driver,
         data_problems=[*([] if alien is None or explained else [alien.text]), *lesser_problems(fit)],
-        notes=[*notes, *_at_rest(fit), *_by_run(first.explained or fit)],
+        notes=[*notes, *([] if sticks else at_rest), *_by_run(first.explained or fit)],
         left_out=families.left_out,
         too_short=too_short,
-        remains=first.remains or bool(left),
+        remains=first.remains or bool(left) or sticks,
     )
 
 
@@ -112,13 +118,10 @@ def _also_missing(answer: Answer) -> Note:
     return Note("also-missing", text, {"effect": answer.candidates[0].effect.name})
 
 
-def _at_rest(fit: Fit) -> list[Note]:
+def _at_rest(found: RestComparison, unit: str) -> Note:
     """What rests say against the model, which sliding cannot say."""
-    found, unit = compare_at_rest(fit), fit.dataset.effort_definition.unit
-    if found is None or not found.is_evidence:
-        return []
     values: dict[str, Value] = {"stretches": found.windows, "outside": found.outside, "largest": found.largest}
-    return [Note("at-rest", at_rest_in_words(found, unit), {**values, "unit": unit})]
+    return Note("at-rest", at_rest_in_words(found, unit), {**values, "unit": unit})
 
 
 def _by_run(fit: Fit) -> list[Note]:

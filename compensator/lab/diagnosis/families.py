@@ -14,7 +14,7 @@ from compensator.lab.diagnosis.physical import (
     is_within_bounds,
     why_impossible,
 )
-from compensator.lab.diagnosis.remaining import what_remains, without_a_name
+from compensator.lab.diagnosis.remaining import large_bursts, what_remains, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
 from compensator.lab.diagnosis.wording import bending_in_words, missing_in_words, nothing_in_words, unknown_in_words
 from compensator.lab.model.fit import fit_effects
@@ -68,11 +68,6 @@ class _Family:
         """What explains most, whether it can be or not."""
         return max(self.shapes, key=lambda item: item.noncentrality)
 
-    @property
-    def p_value(self) -> float:
-        """The chance that luck alone brings any of the family's effects so far."""
-        return among_all(self.named.p_value)
-
     def curve(self, generic: Screening | None) -> Answer | None:
         """A free curve that no formula follows; None where there is none, or none is asked for."""
         if generic is None:
@@ -114,6 +109,9 @@ class _Family:
         first = as_in_the_ladder(candidate, fit, explained, show_in)
         if not is_confirmed(first):
             return "not so in the model with all shapes found anew"
+        if first.gain.low <= 0.0 and large_bursts(self.gathered) is not None:
+            # strong evidence alone holds beside noise that is alike everywhere
+            return "gain not sure, and what is left comes in bursts"
         if impossible := why_impossible(explained, candidate.effect.name):
             return impossible
         examined = [first, *(one for one in self.examined if one is not candidate)]
@@ -123,9 +121,8 @@ class _Family:
         return Answer("missing", sentence, own_chance, examined, None, notes, remains, explained, evidence)
 
     def _chance_of(self, candidate: Candidate) -> float:
-        """The chance of the effect that is to be named, if any of its family is no luck."""
-        family = self.p_value
-        return among_all(self.named.chance_of(candidate.effect.name)) if family <= SIGNIFICANT else family
+        """The chance that luck alone brings anything as far as this effect."""
+        return among_all(self.named.chance_of(candidate.effect.name))
 
     def bend(self) -> Answer | None:
         """What bends along with the joint, where that is not the friction it was taken for; None without any.
@@ -134,18 +131,22 @@ class _Family:
         """
         most, gathered = self.most, self.gathered
         bends = next((one for one in self.examined if one.effect.name == most.block.name), None)
-        if self.p_value > SIGNIFICANT or bends is None or not is_sure(bends) or not is_within_bounds(gathered, most):
+        if bends is None or not is_sure(bends) or not is_within_bounds(gathered, most):
+            return None
+        p_value = self._chance_of(bends)
+        if p_value > SIGNIFICANT:
             return None
         too_far = bends.effect.least_of_friction > 0.0 and is_past_scan(gathered, most)
         part = is_too_small(gathered, most) and not is_before_scan(gathered, most)
         if not too_far and not part:
             return None
         ranked = [bends, *(one for one in self.examined if one is not bends)]
-        sentence = bending_in_words(bends, too_far, self.fit.dataset.facts, self.p_value)
-        return Answer("unknown-effect", sentence, self.p_value, ranked, bends.effect.driver, [], remains=True)
+        sentence = bending_in_words(bends, too_far, self.fit.dataset.facts, p_value)
+        return Answer("unknown-effect", sentence, p_value, ranked, bends.effect.driver, [], remains=True)
 
     def nothing(self, generic: Screening | None) -> Answer:
         """That no effect is confirmed, and what is left all the same, where free curves are asked for."""
-        left = None if generic is None else without_a_name(self.gathered, generic, self.p_value)
-        sentence = left or nothing_in_words(self.p_value, self.gathered.stretches)
-        return Answer("nothing", sentence, self.p_value, self.examined, None, [], remains=left is not None)
+        p_value = self.named.p_value
+        left = None if generic is None else without_a_name(self.gathered, generic, p_value)
+        sentence = left or nothing_in_words(p_value, self.gathered.stretches)
+        return Answer("nothing", sentence, p_value, self.examined, None, [], remains=left is not None)

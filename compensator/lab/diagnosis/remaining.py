@@ -26,8 +26,8 @@ def without_a_name(gathered: Candidates, generic: Screening, p_value: float) -> 
         generic: evidence for free curves.
         p_value: of the effects.
     """
-    fit, bursts = gathered.fit, _bursts(gathered)
-    if bursts is not None and bursts.of_effort > LEAST_SHARE:
+    fit = gathered.fit
+    if (bursts := large_bursts(gathered)) is not None:
         return bursts_in_words(bursts, [_trial_names(fit)[index] for index in bursts.trials], p_value)
     left = left_over(gathered)
     if not left.is_more_than_noise:
@@ -65,12 +65,13 @@ def what_remains(fit: Fit, show_in: MotionRows, name: str) -> list[Note]:
     return [Note("unexplained-remains", text, {"effect": name, "share": left.remainder.share})]
 
 
-def _bursts(gathered: Candidates) -> Bursts | None:
-    """Stretches that leave far more than others of like motion; None without any, or where teeth bounce there."""
+def large_bursts(gathered: Candidates) -> Bursts | None:
+    """Stretches that leave far more than others of like motion; None where that is little, or where teeth bounce."""
     dataset, rows, residual = gathered.fit.dataset, gathered.rows, gathered.fit.residual
     weights = row_weights(dataset, residual, rows) * dataset.steadiness[rows]
     found = bursts_of(dataset, residual[rows], weights, rows)
-    return found if found.are_there and not is_rattle(found, dataset, residual[rows], rows) else None
+    large = found.are_there and found.of_effort > LEAST_SHARE
+    return found if large and not is_rattle(found, dataset, residual[rows], rows) else None
 
 
 def _wanders(fit: Fit, left: LeftOver) -> str:

@@ -12,6 +12,8 @@ from compensator.lab.recordings.recording import FloatArray, Recording
 
 EffortQuantity = Literal["torque", "force", "current", "current_estimate", "terminal_voltage"]
 
+BY_VOLTAGE: tuple[EffortQuantity, ...] = ("terminal_voltage", "current_estimate")  # the back-EMF is in it, or taken off
+
 STANDARD_GRAVITY_M_S2 = 9.80665
 
 

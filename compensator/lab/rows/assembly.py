@@ -41,6 +41,7 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
         raise UnusableDataError("no recordings: choose at least one trial")
     _check_conditions(recordings)
     effort = choose_effort(recordings, facts)
+    facts = replace(facts, effort=effort.quantity)
     check_channels(recordings, effort, facts)
     cutoff = processing.cutoff_hz or choose_cutoff_hz(recordings, effort, facts)
     signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]

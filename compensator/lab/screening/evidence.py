@@ -46,7 +46,7 @@ class Screening:
 
     Attributes:
         evidence: of all blocks.
-        p_value: the chance that luck alone brings any block's own p-value down to the least of them.
+        p_value: the chance that luck alone brings the own p-value of any block screened down to the least of them.
         chance: the same of another p-value than the least; None where p-values of blocks are not of one measure, as
             those by flips of few stretches are not.
     """

@@ -97,8 +97,8 @@ def trial(name: str, position: np.ndarray, lean_rad: float, seed: int) -> Record
     return Recording(name, "x", {}, {"time_s": time_s, "position_rad": position, "torque_n_m": effort})
 
 
-def held_at(effort: float) -> Fit:
-    """Swings with a Stribeck curve, and a joint that is held by that effort without having started."""
+def held_at(*efforts: float) -> Fit:
+    """Swings with a Stribeck curve, and a joint that is held by these efforts without having started."""
     time_s = np.arange(0.0, 8.0, 1.0 / RATE_HZ)
     made = []
     for number, hz in enumerate((0.3, 0.5, 0.8, 1.2) * 3):
@@ -106,10 +106,11 @@ def held_at(effort: float) -> Fit:
         velocity = np.gradient(one.channels["position_rad"], time_s)
         one.channels["torque_n_m"] += COULOMB * np.exp(-np.abs(velocity) / 0.2) * np.sign(velocity)
         made.append(one)
-    rest = trial("held", np.zeros(len(time_s)), 0.0, 9)
-    rest.channels["torque_n_m"] += effort
+    for number, effort in enumerate(efforts):
+        made.append(trial(f"held-{number}", np.zeros(len(time_s)), 0.0, 9))
+        made[-1].channels["torque_n_m"] += effort
     effects = ("inertia", "gravity", "offset", "coulomb", "viscous", "stribeck")
-    return fit_model(make_dataset([*made, rest], Facts(), Processing(cutoff_hz=8.0)), effects)
+    return fit_model(make_dataset(made, Facts(), Processing(cutoff_hz=8.0)), effects)
 
 
 def test_static_friction_below_the_slowest_sliding_is_not_known_without_starts():
@@ -118,6 +119,14 @@ def test_static_friction_below_the_slowest_sliding_is_not_known_without_starts()
     assert 0.05 * COULOMB < rise < COULOMB
     assert not compare_at_rest(held_at(friction + rise)).is_evidence
     assert compare_at_rest(held_at(friction + 8.0 * rise)).is_evidence
+
+
+@pytest.mark.parametrize(("efforts", "sticks"), [((1.5, -1.5), False), ((6.0, -6.0), True), ((6.0, 0.0), False)])
+def test_static_friction_beyond_the_models_is_missing_though_sliding_leaves_nothing(efforts, sticks):
+    found = diagnose(held_at(*(share * COULOMB for share in efforts)))
+    assert (found.verdict, found.remains) == ("nothing", sticks), found.sentence
+    assert found.sentence.startswith("At rest: ") == sticks
+    assert ("static friction is more than this model has" in found.sentence) == sticks
 
 
 def leaning(lean_rad: float) -> Fit:

@@ -89,6 +89,22 @@ def test_what_does_not_hold_leaves_its_place_to_the_next(monkeypatch, extra, can
     assert (answer.verdict, answer.candidates[0].effect.name) == (verdict, first)
 
 
+def test_a_gain_that_is_not_sure_gives_no_name_where_what_is_left_comes_in_bursts(monkeypatch):
+    """Strong evidence does without a sure gain where the noise is alike everywhere."""
+    fit = fit_model(make_dataset(recordings(SPRUNG, seed=4), FACTS, Processing()), default_effects(FACTS))
+    gathered = with_noise(gather(fit))
+    assert gathered.noise is not None
+    blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
+    named = screen_against_noise(gathered.bases, blocks, gathered.noise)
+    unsure = Gain(0.3, -0.1, 0.4)
+    monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=unsure))
+    assert answer_of(fit, gathered, named, None).verdict == "missing"
+    monkeypatch.setattr(families, "large_bursts", lambda _: object())
+    answer = answer_of(fit, gathered, named, None)
+    assert answer.verdict == "nothing"
+    assert "in bursts" in answer.candidates[0].refused
+
+
 SPRUNG = Joint(extra=lambda x: 0.05 * x.q)
 
 

@@ -197,4 +197,5 @@ def test_every_effect_that_leaves_something_open_is_tested_here():
         *NEAR,
         "encoder_eccentricity",
         "warm_up",
+        "winding_temperature",  # in tests/lab/effects/test_winding_temperature.py
     }

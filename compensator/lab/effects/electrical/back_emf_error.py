@@ -1,6 +1,7 @@
 """A back-EMF constant that is not the motor's."""
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.recordings.facts import BY_VOLTAGE
 from compensator.lab.recordings.recording import FloatArray
 
 
@@ -23,6 +24,6 @@ EFFECT = Effect(
     excited_by="a measured current, or a coast-down, in which the winding is open and friction brakes alone",
     source="Saini et al. 2013, eq. (3): i = (D U - k_e w) / R",
     confused_with=("viscous",),
-    efforts=("terminal_voltage", "current_estimate"),
+    efforts=BY_VOLTAGE,
     hidden_by=("viscous",),
 )

@@ -3,6 +3,7 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.recordings.facts import BY_VOLTAGE
 from compensator.lab.recordings.recording import FloatArray
 
 
@@ -51,7 +52,7 @@ EFFECT = Effect(
     smooth_shape=True,
     shape_names=("share of the largest effort at which its sign is sure",),
     confused_with=("coulomb", "torque_constant_saturation"),
-    efforts=("terminal_voltage", "current_estimate"),
+    efforts=BY_VOLTAGE,
     builds_on="effort",
     discrepancy=discrepancy,
     slope=slope,

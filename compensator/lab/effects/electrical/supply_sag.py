@@ -3,6 +3,7 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.recordings.facts import BY_VOLTAGE
 from compensator.lab.recordings.recording import FloatArray
 
 
@@ -39,7 +40,7 @@ EFFECT = Effect(
     excited_by="holds and lifts with small and with very large torque; or a measured supply voltage",
     source="Kirchhoff; the stage as an ideal transformer of ratio D",
     confused_with=("torque_constant_saturation", "load_friction_quadratic"),
-    efforts=("terminal_voltage", "current_estimate"),
+    efforts=BY_VOLTAGE,
     facts=("supply_is_nominal",),
     builds_on="effort",
     discrepancy=discrepancy,

@@ -1,6 +1,9 @@
 """Effort that grows with the motor's temperature."""
 
+import numpy as np
+
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
+from compensator.lab.recordings.facts import BY_VOLTAGE
 from compensator.lab.recordings.recording import FloatArray
 
 REFERENCE_C = 25.0  # where the plain coefficients hold
@@ -9,6 +12,13 @@ REFERENCE_C = 25.0  # where the plain coefficients hold
 def columns(motion: Motion, _: Shape) -> FloatArray:
     """Predicted effort by current times temperature above the reference."""
     return ((motion.temperature_c - REFERENCE_C) * motion.driven)[None]
+
+
+def discrepancy(motion: Motion, _: Shape) -> FloatArray:
+    """What magnets that pull less leave where the effort comes from a voltage: the back-EMF falls with them."""
+    if motion.facts.effort not in BY_VOLTAGE:
+        return np.empty((0, len(motion.velocity)))
+    return ((motion.temperature_c - REFERENCE_C) * motion.velocity)[None]
 
 
 EFFECT = Effect(
@@ -28,4 +38,5 @@ EFFECT = Effect(
     confused_with=("coulomb_temperature", "viscous_temperature"),
     builds_on="effort",
     varies_with="temperature_c",
+    discrepancy=discrepancy,
 )
