@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from bench.cli.lab import diagnosis_tables
 from bench.cli.lab.diagnosis_tables import after_search, next_step
 from tests.service.recorded_joint import recording_set_zip
 
@@ -153,3 +154,19 @@ def test_where_no_effect_is_offered_the_next_step_is_a_command(verdict, code, sl
     assert after_search(found) == f"next: friction-bench {command}"
     found.classes, found.provisional = [], None
     assert next_step(found, None) == f"next: friction-bench {command}"
+
+
+def test_every_reason_against_an_effect_is_in_its_row(monkeypatch):
+    told = {"why_not": ["may be luck", "gain not sure"], "effect": "spring", "in_class": False}
+    numbers = dict.fromkeys(
+        ("score", "p_value", "held_out_before", "held_out_after", "gain", "gain_low", "gain_high", "d_prime"), 0.5
+    )
+    found = SimpleNamespace(
+        sentence="", slight=False, findings=[], classes=[], provisional=None, notes=[],
+        ranking=[SimpleNamespace(**told, **numbers)],
+    )  # fmt: skip
+    shown = []
+    monkeypatch.setattr(diagnosis_tables, "table", lambda *table: shown.append(table))
+    diagnosis_tables.diagnosis(found)
+    _, columns, rows = shown[0]
+    assert dict(zip(columns, rows[0], strict=True))["why not"] == "may be luck, gain not sure"

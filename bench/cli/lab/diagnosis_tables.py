@@ -36,7 +36,7 @@ def diagnosis(found: "Diagnosis") -> None:
             percent(one.held_out_after),
             share_interval(one.gain, one.gain_low, one.gain_high),
             text(one.d_prime),
-            one.why_not[-1] if one.why_not else "",
+            ", ".join(one.why_not),
         )
         for one in found.ranking
     ]
