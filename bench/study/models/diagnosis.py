@@ -126,6 +126,13 @@ class Diagnosis(StudyModel):
         description="all that stands beside the answer, each once: problems of the data, notes, effects not judged"
     )
 
+    @property
+    def offered(self) -> str | None:
+        """The effect, or the curve in its place, that is offered to be added; None where none is."""
+        if self.classes and not self.slight:
+            return self.classes[0].effects[0]
+        return self.provisional.effect if self.provisional else None
+
 
 class NotDiagnosed(StudyModel):
     """A study whose newest model cannot be judged, and why."""
