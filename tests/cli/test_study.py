@@ -188,4 +188,6 @@ def test_every_reason_against_an_effect_is_in_its_row(monkeypatch):
     monkeypatch.setattr(diagnosis_tables, "table", lambda *table: shown.append(table))
     diagnosis_tables.diagnosis(found)
     _, columns, rows = shown[0]
-    assert dict(zip(columns, rows[0], strict=True))["why not"] == "may be luck, gain not sure"
+    row = dict(zip(columns, rows[0], strict=True))
+    assert row["why not"] == "may be luck, gain not sure"
+    assert row["p, alone#"] == "0.5"  # the sentence's is corrected for all screenings
