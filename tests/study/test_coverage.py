@@ -115,7 +115,10 @@ def test_an_effect_that_hides_and_effects_that_look_alike(store: Store) -> None:
     assert "load_friction_quadratic" in by_name["load_friction"].rivals  # one load: a line and a curve are one
     assert by_name["viscous_asymmetry"].standing == "judgeable"
     assert by_name["rate_dependent_breakaway"].standing == "not measured"
-    assert RAMPS in [one.trial for one in found.advice] or by_name["rate_dependent_breakaway"].reason
+    assert RAMPS in [one.trial for one in found.advice]
+    starts = next(one for one in found.held if one.quantity == "starts from rest")
+    assert f"{starts.found.split()[0]} starts from rest whose effort" in by_name["rate_dependent_breakaway"].reason
+    assert starts.lacking.startswith("12 are needed")
 
 
 @pytest.mark.timeout(300)
