@@ -22,6 +22,7 @@ TURNS = 2.0
 
 LOADS = "the same motion with three loads or more, the largest five times the smallest"
 WARMTH = "the drive's temperature beside the other channels, with the same slow trial cold and warm"
+WARMER = f"the same slow trial cold and warm, {WARM_K:g} K apart or more"
 SESSION = "the same slow trial at the start, in the middle and at the end of a session, with the time of day"
 BOTH = "the same motion the other way round"
 RAMPS = "breakaway ramps from rest at several rates, both ways"
@@ -185,7 +186,7 @@ def _opens(one: Judgeable, found: lab.Coverage) -> str:
     if effect.varies_with == "load_kg" and len(found.loads_kg) < FEWEST_LOADS:
         return LOADS
     if _goes_by_warmth(effect) and not _warms_up(found.temperature_c):
-        return WARMTH
+        return WARMTH if found.temperature_c is None else WARMER
     if effect.varies_with == "session_s":
         return SESSION
     if one.few:
