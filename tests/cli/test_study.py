@@ -6,7 +6,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from bench.cli.lab.diagnosis_tables import after_search, next_step
+from bench.cli.lab import diagnosis_tables
+from bench.cli.lab.diagnosis_tables import next_step
+from bench.study.diagnosis import search as search_module
+from bench.study.models.diagnosis import ProvisionalTerm
 from tests.service.recorded_joint import recording_set_zip
 
 
@@ -138,6 +141,24 @@ def test_each_step_of_a_study_names_the_next(command, tmp_path):
     assert searched[-1] == keep
 
 
+def test_a_search_that_ends_at_a_curve_offers_it_as_its_diagnosis_does(command, tmp_path, monkeypatch):
+    def of_what_is_unknown(diagnosis):
+        def offering(*asked):
+            told = diagnosis(*asked)
+            curve = {"effect": "curve_of_speed_against_motion"}
+            return told.model_copy(update={"classes": [], "provisional": ProvisionalTerm.model_construct(**curve)})
+
+        return offering
+
+    (tmp_path / "known joint.zip").write_bytes(recording_set_zip())
+    assert command("import", "known joint.zip").exit_code == 0
+    assert command("study", "new", "arm", "--experiment", 1).exit_code == 0
+    monkeypatch.setattr(search_module, "answer_of", of_what_is_unknown(search_module.answer_of))
+    offered = "next: friction-bench study add 1 curve_of_speed_against_motion"
+    assert command("study", "search", 1).stdout.splitlines()[-1] == offered
+    assert command("study", "search", 1, "--model", 2).stdout.splitlines()[-1] == f"{offered} --model 2"
+
+
 @pytest.mark.parametrize(
     ("verdict", "code", "slight", "command"),
     [
@@ -150,6 +171,23 @@ def test_each_step_of_a_study_names_the_next(command, tmp_path):
 )
 def test_where_no_effect_is_offered_the_next_step_is_a_command(verdict, code, slight, command):
     found = SimpleNamespace(study_id=3, verdict=verdict, conclusion=SimpleNamespace(code=code), slight=slight)
-    assert after_search(found) == f"next: friction-bench {command}"
-    found.classes, found.provisional = [], None
+    found.offered = None
     assert next_step(found, None) == f"next: friction-bench {command}"
+
+
+def test_every_reason_against_an_effect_is_in_its_row(monkeypatch):
+    told = {"why_not": ["may be luck", "gain not sure"], "effect": "spring", "in_class": False}
+    numbers = dict.fromkeys(
+        ("score", "p_value", "held_out_before", "held_out_after", "gain", "gain_low", "gain_high", "d_prime"), 0.5
+    )
+    found = SimpleNamespace(
+        sentence="", slight=False, findings=[], classes=[], provisional=None, notes=[],
+        ranking=[SimpleNamespace(**told, **numbers)],
+    )  # fmt: skip
+    shown = []
+    monkeypatch.setattr(diagnosis_tables, "table", lambda *table: shown.append(table))
+    diagnosis_tables.diagnosis(found)
+    _, columns, rows = shown[0]
+    row = dict(zip(columns, rows[0], strict=True))
+    assert row["why not"] == "may be luck, gain not sure"
+    assert row["p, alone#"] == "0.5"  # the sentence's is corrected for all screenings

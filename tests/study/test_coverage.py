@@ -12,7 +12,7 @@ from bench.store import Store
 from bench.study.create import create_study
 from bench.study.diagnosis.diagnose import diagnose
 from bench.study.errors import StudyError
-from bench.study.explanation.coverage import LOADS, RAMPS, REPEAT, REVERSALS, WARMTH, coverage
+from bench.study.explanation.coverage import LOADS, RAMPS, REPEAT, REVERSALS, WARMER, WARMTH, coverage
 from bench.study.explanation.explain import STEPS, explain
 from bench.study.models.coverage import Coverage
 from compensator.lab.recordings.recording import FloatArray, Recording
@@ -52,7 +52,7 @@ def test_two_loads_both_ways_and_repeats(store: Store, experiment_id: int) -> No
     assert lacking(found, "temperature") == ""  # measured, and it warms up
     advised = [one.trial for one in found.advice]
     assert advised[0] == LOADS
-    assert not {WARMTH, REPEAT} & set(advised)
+    assert not {WARMTH, WARMER, REPEAT} & set(advised)
 
 
 def test_a_trial_too_short_for_the_filter_is_left_out_and_counted(store: Store) -> None:
@@ -78,6 +78,7 @@ def test_what_is_there_is_not_advised(store: Store) -> None:
 def test_one_way_only_is_said(store: Store) -> None:
     found = shaft(store, (1.0,))
     assert lacking(found, "directions").startswith("one way only")
+    assert WARMTH in [one.trial for one in found.advice], "no temperature is measured"
     assert any("other way round" in one.trial for one in found.advice)
 
 
@@ -115,7 +116,10 @@ def test_an_effect_that_hides_and_effects_that_look_alike(store: Store) -> None:
     assert "load_friction_quadratic" in by_name["load_friction"].rivals  # one load: a line and a curve are one
     assert by_name["viscous_asymmetry"].standing == "judgeable"
     assert by_name["rate_dependent_breakaway"].standing == "not measured"
-    assert RAMPS in [one.trial for one in found.advice] or by_name["rate_dependent_breakaway"].reason
+    assert RAMPS in [one.trial for one in found.advice]
+    starts = next(one for one in found.held if one.quantity == "starts from rest")
+    assert f"{starts.found.split()[0]} starts from rest whose effort" in by_name["rate_dependent_breakaway"].reason
+    assert starts.lacking.startswith("12 are needed")
 
 
 @pytest.mark.timeout(300)
@@ -154,4 +158,6 @@ def test_what_the_temperature_leaves_open_is_what_is_said_of_its_effects(store: 
     assert bool(shown) == (warmest_c > 26.0)
     least = f"less than 5 K: effects of temperature show from {min(shown, default=0.0):.2%} of the effort on"
     assert lacking(found, "temperature") == (least if shown else "effects of temperature cannot be seen")
-    assert WARMTH in [one.trial for one in found.advice] or shown
+    advised = [one.trial for one in found.advice]
+    assert WARMER in advised or shown
+    assert WARMTH not in advised, "the channel is there: its range is too small"

@@ -36,12 +36,12 @@ def diagnosis(found: "Diagnosis") -> None:
             percent(one.held_out_after),
             share_interval(one.gain, one.gain_low, one.gain_high),
             text(one.d_prime),
-            one.why_not[-1] if one.why_not else "",
+            ", ".join(one.why_not),
         )
         for one in found.ranking
     ]
     if rows:
-        columns = ["effect", "named", "score#", "p#", "held out before#", "after#", "gain#", "d'#", "why not"]
+        columns = ["effect", "named", "score#", "p, alone#", "held out before#", "after#", "gain#", "d'#", "why not"]
         table("Effects by evidence", columns, rows)
     if found.provisional:
         say(found.provisional.sentence)
@@ -49,28 +49,16 @@ def diagnosis(found: "Diagnosis") -> None:
         say(note)
 
 
-def next_step(found: "Diagnosis", model_id: int | None) -> str:
-    """What to do after a diagnosis, on one line.
+def next_step(found: "Diagnosis | Searched", model_id: int | None) -> str:
+    """What to do after a diagnosis or a search, on one line: add what is offered, mend the data, keep, or record more.
 
     Args:
-        found: the diagnosis.
+        found: the diagnosis, or the search with what its last model lacks.
         model_id: the model that was asked for; None: the newest.
     """
-    named = [] if found.slight else [name for members in found.classes for name in members.effects]
-    offered = named or ([found.provisional.effect] if found.provisional else [])
-    if not offered:
-        return _without_a_name(found)
-    beside = "" if model_id is None else f" --model {model_id}"
-    return f"next: friction-bench study add {found.study_id} {offered[0]}{beside}"
-
-
-def after_search(found: "Searched") -> str:
-    """What to do after a search, on one line."""
-    return _without_a_name(found)
-
-
-def _without_a_name(found: "Diagnosis | Searched") -> str:
-    """The next command where no effect is offered: correct the data, keep what was found, or record more."""
+    if found.offered:
+        beside = "" if model_id is None else f" --model {model_id}"
+        return f"next: friction-bench study add {found.study_id} {found.offered}{beside}"
     if found.verdict == "data-problem":
         return "next: friction-bench study new NAME --experiment NUMBER --leave-out TRIAL"
     if found.slight or found.conclusion.code in ("nothing", "not-confirmed"):

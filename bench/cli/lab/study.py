@@ -219,7 +219,7 @@ def search_command(
 
     def show(found: "Searched") -> None:
         diagnosis_tables.search(found)
-        say(session.in_full(diagnosis_tables.after_search(found)))
+        say(session.in_full(diagnosis_tables.next_step(found, None if found.steps else model)))
 
     _show(context, as_json, show, search, study, model, most)
 

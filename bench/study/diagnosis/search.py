@@ -70,6 +70,7 @@ def _searched(store: Store, study_id: int, model_id: int | None, most: int) -> t
         steps=steps,
         verdict=last.verdict,
         conclusion=last.conclusion,
+        offered=last.offered,
         slight=last.slight,
         sentence=last.advice if last.slight else last.sentence,
     )

@@ -8,6 +8,8 @@ from bench.study.errors import lab_errors
 from bench.study.material import load_model
 from bench.study.models.coverage import Advice, Coverage, Held, JudgedEffect
 from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
+from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.at_rest.few_rows import starts_counted
 from compensator.lab.comparison.judgeable import Judgeable, judgeable
 from compensator.lab.effects.effect import Effect
 from compensator.lab.rows import coverage as lab
@@ -20,6 +22,7 @@ TURNS = 2.0
 
 LOADS = "the same motion with three loads or more, the largest five times the smallest"
 WARMTH = "the drive's temperature beside the other channels, with the same slow trial cold and warm"
+WARMER = f"the same slow trial cold and warm, {WARM_K:g} K apart or more"
 SESSION = "the same slow trial at the start, in the middle and at the end of a session, with the time of day"
 BOTH = "the same motion the other way round"
 RAMPS = "breakaway ramps from rest at several rates, both ways"
@@ -42,8 +45,8 @@ def coverage(store: Store, study_id: int, model_id: int | None = None) -> Covera
     material, model = load_model(store, study_id, model_id)
     with lab_errors():
         fit = material.fit_of(model)
-        found, effects = lab.coverage_of(fit.dataset), judgeable(fit)
-    held = list(_held(found, fit.dataset, len(material.definition.too_short), effects))
+        found, effects, starts = lab.coverage_of(fit.dataset), judgeable(fit), starts_counted(breakaway_rows(fit))
+    held = list(_held(found, fit.dataset, len(material.definition.too_short), effects, starts))
     advice = _advice(found, effects)
     count = {name: sum(one.standing == name for one in effects) for name in ("judgeable", "confounded")}
     best = f" What would help most: {advice[0].trial}." if advice else ""
@@ -72,7 +75,9 @@ def _judged(one: Judgeable) -> JudgedEffect:
     )
 
 
-def _held(found: lab.Coverage, dataset: Dataset, left_out: int, effects: Sequence[Judgeable]) -> Iterator[Held]:
+def _held(
+    found: lab.Coverage, dataset: Dataset, left_out: int, effects: Sequence[Judgeable], starts: int
+) -> Iterator[Held]:
     unit = dataset.facts.position_unit
     short = f"; {left_out} more too short for the filter at {dataset.cutoff_hz:.3g} Hz" if left_out else ""
     yield Held(
@@ -96,8 +101,8 @@ def _held(found: lab.Coverage, dataset: Dataset, left_out: int, effects: Sequenc
     yield Held(quantity="temperature", found=_warmth(found.temperature_c), lacking=_warmth_lacks(found, effects))
     yield Held(
         quantity="starts from rest",
-        found=str(found.starts),
-        lacking="" if found.starts >= FEWEST_STARTS else f"{FEWEST_STARTS} are needed for static friction",
+        found=f"{starts} whose effort is known",
+        lacking="" if starts >= FEWEST_STARTS else f"{FEWEST_STARTS} are needed for static friction",
     )
     yield Held(
         quantity="repeats",
@@ -181,7 +186,7 @@ def _opens(one: Judgeable, found: lab.Coverage) -> str:
     if effect.varies_with == "load_kg" and len(found.loads_kg) < FEWEST_LOADS:
         return LOADS
     if _goes_by_warmth(effect) and not _warms_up(found.temperature_c):
-        return WARMTH
+        return WARMTH if found.temperature_c is None else WARMER
     if effect.varies_with == "session_s":
         return SESSION
     if one.few:
@@ -190,8 +195,6 @@ def _opens(one: Judgeable, found: lab.Coverage) -> str:
         return ""
     if not found.both_directions:
         return BOTH
-    if effect.rows == "breakaway" and found.starts < FEWEST_STARTS:
-        return RAMPS
     if effect.builds_on == "load" and len(found.loads_kg) < FEWEST_LOADS:
         return LOADS
     return ""

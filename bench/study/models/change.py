@@ -68,5 +68,8 @@ class Searched(StudyModel):
     steps: list[SearchStep]
     verdict: str
     conclusion: Conclusion = Field(description="of the last model, as its diagnosis has it")
+    offered: str | None = Field(
+        description="effect, or curve in its place, that its last model's diagnosis offers to be added; null: none"
+    )
     slight: bool = Field(description="what its last model lacks by the verdict is slight, and was not added")
     sentence: str

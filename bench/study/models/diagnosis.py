@@ -66,7 +66,7 @@ class Ranked(StudyModel):
     effect: str
     title: str
     score: Number
-    p_value: Number = Field(description=f"of this effect alone; {LEAST_P}")
+    p_value: Number = Field(description=f"of this effect alone, not corrected for what else is screened; {LEAST_P}")
     held_out_before: Number
     held_out_after: Number
     gain: Number
@@ -125,6 +125,13 @@ class Diagnosis(StudyModel):
     findings: list[Finding] = Field(
         description="all that stands beside the answer, each once: problems of the data, notes, effects not judged"
     )
+
+    @property
+    def offered(self) -> str | None:
+        """The effect, or the curve in its place, that is offered to be added; None where none is."""
+        if self.classes and not self.slight:
+            return self.classes[0].effects[0]
+        return self.provisional.effect if self.provisional else None
 
 
 class NotDiagnosed(StudyModel):

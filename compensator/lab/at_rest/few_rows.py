@@ -39,9 +39,14 @@ def few_starts(fit: Fit, rows: BreakawayRows | None) -> dict[str, str] | None:
         fit: of the model.
         rows: its starts from rest.
     """
-    count = 0 if rows is None else int(rows.training.sum())
+    count = starts_counted(rows)
     if rows is not None and count >= FEWEST_STARTS:
         return None
     why = f"{count} starts from rest whose effort is known, wanted {FEWEST_STARTS}; record breakaway ramps: "
     wanted = [effect for effect, _ in shares_of(candidates(fit.names, fit.dataset.facts)) if effect.rows == "breakaway"]
     return {effect.name: f"{effect.name} needs more: {why}{effect.excited_by}" for effect in wanted}
+
+
+def starts_counted(rows: BreakawayRows | None) -> int:
+    """How many starts from rest whose effort is known a model is fitted to."""
+    return 0 if rows is None else int(rows.training.sum())

@@ -6,7 +6,7 @@ would not judge, for want of reversals or starts from rest, is not measured here
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nan
 from typing import Literal
 
@@ -16,6 +16,7 @@ from compensator.lab.at_rest.few_rows import few_rows
 from compensator.lab.effects.catalogue import candidates
 from compensator.lab.effects.effect import Effect
 from compensator.lab.errors import NotApplicableError
+from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import relative_error
 from compensator.lab.model.prediction import with_own_prediction
@@ -53,11 +54,15 @@ class Judgeable:
 
 @dataclass(frozen=True)
 class _Shown:
-    """An effect beside a model. Attributes: orthonormal columns of some shapes; the most of its power that is left."""
+    """An effect beside a model.
+
+    Attributes: orthonormal columns of some shapes; the most of its power that is left; size from which it would show.
+    """
 
     effect: Effect
     blocks: list[FloatArray]
     left: float
+    smallest: float = nan
 
 
 def judgeable(fit: Fit) -> list[Judgeable]:
@@ -70,6 +75,7 @@ def judgeable(fit: Fit) -> list[Judgeable]:
     found: dict[str, Judgeable] = {}
     base = _orthonormal(fit.columns[fit.training])
     dataset = with_own_prediction(fit.dataset, fit.terms)
+    wide = widened(fit, "moving") if fit.dataset.rows == "sliding" else fit
     too_few = few_rows(fit)
     for effect in candidates(fit.names, fit.dataset.facts):
         if effect.name in too_few:
@@ -81,7 +87,7 @@ def judgeable(fit: Fit) -> list[Judgeable]:
         except NotApplicableError as error:
             found[effect.name] = Judgeable(effect, "not measured", str(error).partition("; ")[0], ())
             continue
-        smallest = _smallest(fit, one.left)
+        smallest = _smallest(wide if effect.rows == "moving" else fit, one.left)
         if not one.blocks and not effect.hidden_by:
             found[effect.name] = Judgeable(effect, "not measured", "nothing in these trials excites it", ())
         elif not smallest < MOST:
@@ -89,16 +95,21 @@ def judgeable(fit: Fit) -> list[Judgeable]:
             reason = f"{hiding} makes up for {1.0 - one.left:.2%} of it"
             found[effect.name] = Judgeable(effect, "hidden", reason, (), smallest)
         else:
-            shown.append(one)
+            shown.append(replace(one, smallest=smallest))
     for one in shown:
         alike = tuple(other.effect.name for other in shown if other is not one and _alike(one.blocks, other.blocks))
         standing: Standing = "confounded" if alike else "judgeable"
-        found[one.effect.name] = Judgeable(one.effect, standing, "", alike, _smallest(fit, one.left))
+        found[one.effect.name] = Judgeable(one.effect, standing, "", alike, one.smallest)
     return [found[effect.name] for effect in candidates(fit.names, fit.dataset.facts)]
 
 
 def _smallest(fit: Fit, left: float) -> float:
-    """Size of an effect, over that of the effort, from which it would show; rows of one stretch count as one."""
+    """Size of an effect, over that of the effort, from which it would show; rows of one stretch count as one.
+
+    Args:
+        fit: on the rows where it shows: near reversals a model leaves more than in sliding.
+        left: share of its power that the model leaves.
+    """
     stretches = len(np.unique(fit.dataset.block_index[fit.training]))
     noise = relative_error(fit.residual[fit.training], fit.dataset.effort[fit.training])
     return SURE * noise / float(np.sqrt(stretches * left)) if left > TINY else nan

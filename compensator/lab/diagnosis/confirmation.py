@@ -43,7 +43,7 @@ def doubts(candidate: Candidate) -> list[str]:
         f"explains under {LEAST_OF_EFFORT:.2%} of the effort": explained >= LEAST_OF_EFFORT**2,
         f"gain under {least:.1%}": gain.value >= least,
         "gain not sure": gain.low > 0.0 or (strong and candidate.rows == "sliding"),
-        "impossible size, sign or shape": candidate.physical,
+        candidate.impossible or "impossible size, sign or shape": candidate.physical,
     }
     return [doubt for doubt, holds in asked.items() if not holds] + ([candidate.refused] if candidate.refused else [])
 

@@ -124,21 +124,27 @@ def _ordered_conditions(fit: Fit) -> list[str]:
 
 
 def _odd_trials(fit: Fit) -> list[str]:
-    dataset, found = fit.dataset, []
+    """A trial that is unlike the others, in a sentence; where several are, what they share is no disturbance of one."""
+    dataset, unit = fit.dataset, fit.dataset.effort_definition.unit
     errors = _errors(dataset, fit.residual, fit.training, FEWEST_ROWS_OF_ODD)
     if len(errors) < FEWEST_TRIALS_TO_COMPARE:
         return []
-    median = float(np.median(list(errors.values())))
+    median, worst = float(np.median(list(errors.values()))), max(errors.values())
     # where nothing is noisy, the errors are those of filters and rounding, and differ by any factor
-    resolved = LEAST_OF_EFFORT * rms(dataset.effort[fit.training])
-    for index, error in errors.items():
-        if error > max(ODD_TRIAL_FACTOR * median, resolved):
-            name = dataset.trials[index].signals.recording.name
-            found.append(
-                f"trial '{name}' is unlike the others: its error is {error:.3g} {dataset.effort_definition.unit}, the "
-                f"median trial's is {median:.3g}; look at it, and leave it out if it was disturbed"
-            )
-    return found
+    odd = max(ODD_TRIAL_FACTOR * median, LEAST_OF_EFFORT * rms(dataset.effort[fit.training]))
+    if worst <= odd:
+        return []
+    apart = sorted((index for index in errors if errors[index] > min(odd, worst / UNLIKE)), key=lambda i: -errors[i])
+    names = [f"'{dataset.trials[index].signals.recording.name}'" for index in apart]
+    if len(names) == 1:
+        return [
+            f"trial {names[0]} is unlike the others: its error is {worst:.3g} {unit}, the median trial's is "
+            f"{median:.3g}; look at it, and leave it out if it was disturbed"
+        ]
+    return [
+        f"trials {some_of(names)} are unlike the others: their errors are {errors[apart[-1]]:.3g} to {worst:.3g} "
+        f"{unit}, the median trial's is {median:.3g}; look at what they share, and leave none out for its error alone"
+    ]
 
 
 def _few_usable(fit: Fit) -> list[str]:

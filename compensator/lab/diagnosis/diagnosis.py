@@ -45,6 +45,7 @@ class Candidate:
         picture: why.
         refused: why it is not the answer though its own numbers confirm it; empty where nothing speaks against it.
         errors: held out, with it, of its family's rows; None of starts from rest.
+        impossible: why it is not physical, in words; empty where it is, or where nothing more is known.
         rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
     """
 
@@ -61,6 +62,7 @@ class Candidate:
     picture: Picture | None
     rows: EffectRows = "sliding"
     refused: str = ""
+    impossible: str = ""
     errors: HeldOut | None = field(default=None, repr=False)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from compensator.lab import progress
 from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.physical import TOLD, is_physical, is_told
+from compensator.lab.diagnosis.physical import is_physical, why_not_physical
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import MotionRows
@@ -141,6 +141,7 @@ def _candidate(
     gathered: Candidates, item: Evidence, errors: tuple[HeldOut, HeldOut], rivals: set[str], nearest: float
 ) -> Candidate:
     before, after = errors
+    impossible = why_not_physical(gathered, item)
     return Candidate(
         effect=effect_named(item.block.name),
         shape=item.block.shape,
@@ -151,9 +152,9 @@ def _candidate(
         before=before.relative,
         after=after.relative,
         gain=held_out_gain(before, after),
-        physical=is_physical(gathered, item),
+        physical=not impossible,
         picture=picture_of(gathered, item),
         errors=after,
-        refused=TOLD if is_told(gathered, item) else "",
+        impossible=impossible,
         rows=gathered.show_in,
     )

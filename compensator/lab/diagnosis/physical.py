@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.effects.effect import Parameter, shape_parameters
 from compensator.lab.model.fitted import Fit
-from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import VERY_STRONG, Evidence, score_of
 
@@ -17,8 +18,16 @@ ROUNDING = 1e-6  # of a shape that was looked for by its logarithm
 
 def is_physical(gathered: Candidates, item: Evidence) -> bool:
     """Whether size and shape are such that it can be the effect."""
-    within = not is_past_scan(gathered, item) and not is_before_scan(gathered, item)
-    return within and is_possible(gathered, item)
+    return not why_not_physical(gathered, item)
+
+
+def why_not_physical(gathered: Candidates, item: Evidence) -> str:
+    """Why size, sign or shape are such that it cannot be the effect, in words; empty where it can."""
+    if is_past_scan(gathered, item):
+        return f"{_shape(gathered, item, int(np.argmax(_past(gathered, item))))} is the most that it can be"
+    if is_before_scan(gathered, item):
+        return f"{_shape(gathered, item)} is the least that it can be"
+    return _why_not_possible(gathered, item)
 
 
 def why_impossible(fit: Fit, name: str) -> str:
@@ -43,8 +52,45 @@ def is_possible(gathered: Candidates, item: Evidence) -> bool:
 
     What the measuring chain makes near reversals is nothing physical, and what the owner tells of is not missing.
     """
-    fits = is_within_bounds(gathered, item) and not is_too_small(gathered, item)
-    return fits and not is_told(gathered, item) and not is_made_by_chain(gathered, item)
+    return not _why_not_possible(gathered, item)
+
+
+def _why_not_possible(gathered: Candidates, item: Evidence) -> str:
+    """Why it is not possible, in words; empty where it is."""
+    if not is_within_bounds(gathered, item):
+        return f"it would be {_size(gathered, item)}"
+    if is_too_small(gathered, item):
+        return f"it would be under {effect_named(item.block.name).least_of_friction:.0%} of dry friction"
+    if is_told(gathered, item):
+        return f"{TOLD} ({_shape(gathered, item)})"
+    if is_made_by_chain(gathered, item):
+        return "the measuring chain alone may make it"
+    return ""
+
+
+def _shape(gathered: Candidates, item: Evidence, at: int = 0) -> str:
+    """A value of its shape, in words."""
+    effect = effect_named(item.block.name)
+    one = shape_parameters(effect.shape_names, effect.shape_units)[at]
+    return f"{one.name} {_with_unit(gathered, item.block.shape[at], one)}"
+
+
+def _size(gathered: Candidates, item: Evidence) -> str:
+    """Its coefficients that are beyond what they can be, freely fitted, in words."""
+    effect = effect_named(item.block.name)
+    ranges = effect.ranges_in(gathered.fit.dataset.effort_definition.quantity)
+    found = gathered.bases[item.block.base].coefficients(item.block.columns)
+    return ", ".join(
+        f"{_with_unit(gathered, value, one)}, allowed {low:.3g} {'or more' if np.isinf(high) else f'to {high:.3g}'}"
+        for one, value, (low, high) in zip(effect.parameters, found, ranges, strict=True)
+        if not low <= value <= high
+    )
+
+
+def _with_unit(gathered: Candidates, value: float, parameter: Parameter) -> str:
+    dataset = gathered.fit.dataset
+    unit = parameter.unit_in(dataset.effort_definition.unit, dataset.facts.position_unit)
+    return f"{value:.3g}" if unit in ("", "1") else f"{value:.3g} {unit}"
 
 
 def is_told(gathered: Candidates, item: Evidence) -> bool:
@@ -79,11 +125,17 @@ def is_too_small(gathered: Candidates, item: Evidence) -> bool:
 
 def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
     """Whether the shape lies at an upper end of a scan of all that the effect can be: what fits there goes on."""
+    return bool(np.any(_past(gathered, item)))
+
+
+def _past(gathered: Candidates, item: Evidence) -> BoolArray:
+    """Which of the shape's first values lie there, shape (values,)."""
     ends, within = _scanned(gathered, item), effect_named(item.block.name).ends_within_scan
     if len(ends) == 0:
-        return False
+        return np.zeros(0, dtype=bool)
     shape = np.array(item.block.shape)[:within]
-    return bool(np.any(shape >= (1.0 - ROUNDING) * np.max(ends, axis=0)[:within]))
+    past: BoolArray = shape >= (1.0 - ROUNDING) * np.max(ends, axis=0)[:within]
+    return past
 
 
 def is_before_scan(gathered: Candidates, item: Evidence) -> bool:

@@ -29,8 +29,8 @@ LEAST_HZ = 0.25  # what is slower turns less than once in a trial of some second
 BAND = 0.9  # of the cut-off
 REACH_HZ = (0.3, 1.0)  # of a line in a trial of some seconds, and of noise that is smooth
 FEWEST_TRIALS = 4
-ALIKE = 0.9  # correlation of two trials' velocities: of one motion
-MOMENTS = 200  # of a trial, at which that is looked at
+ALIKE = 0.9  # correlation of the spectra of two trials' velocities: of one motion
+MOMENTS = 200  # of the longest trial, at which that is looked at
 LEAST_SHARE = 1e-3  # of what counts most: what counts less is left out
 
 Indices = np.ndarray[tuple[int], np.dtype[np.intp]]
@@ -178,12 +178,17 @@ def _voltage_of(trial: Trial) -> FloatArray:
 
 
 def motions_of(trials: Sequence[Trial]) -> IntArray:
-    """Which of the motions each trial has, counted through, shape (trials,)."""
+    """Which of the motions each trial has, counted through, shape (trials,).
+
+    By the sizes of the velocity's frequencies: what is missing of a motion has these, whenever it began.
+    """
+    longest_s = max(float(np.ptp(trial.motion.time_s)) for trial in trials)
     found: list[FloatArray] = []
     numbers = []
     for trial in trials:
-        time_s, velocity = trial.motion.time_s, trial.motion.velocity
-        own = np.interp(np.linspace(time_s[0], time_s[-1], MOMENTS), time_s, velocity)
+        time_s = trial.motion.time_s - trial.motion.time_s[0]
+        velocity = np.interp(np.linspace(0.0, longest_s, MOMENTS), time_s, trial.motion.velocity, right=0.0)
+        own = np.abs(np.fft.rfft(velocity, 2 * MOMENTS))
         own = own / (float(np.linalg.norm(own)) or 1.0)
         same = [number for number, other in enumerate(found) if float(own @ other) >= ALIKE]
         numbers.append(same[0] if same else len(found))

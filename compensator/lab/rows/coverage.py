@@ -1,4 +1,4 @@
-"""What recordings hold, before anything is fitted: directions, speeds, loads, temperatures, starts, repeats."""
+"""What recordings hold, before anything is fitted: directions, speeds, loads, temperatures, repeats."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -13,7 +13,6 @@ from compensator.lab.rows.dataset import Dataset, Trial
 
 NOT_CONDITIONS = ("repeat", "rows", SESSION_START)  # trials that differ by these alone repeat each other
 ONE_WAY = 0.05  # share of the rows in the rarer direction, below which there is one direction
-SLIDES = 3.0  # times the speed at which the direction is sure: a start that comes to that is one
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,6 @@ class Coverage:
         one_way: the most that a trial goes one way without coming back, in units of position.
         loads_kg: the different loads, rising; empty where none is told.
         temperature_c: lowest and highest; None where it is not measured.
-        starts: from rest into sliding.
         repeats: trials of which another has the same kind and conditions.
         driven_s: time in which something else turns the joint.
         usable: share of the samples that can be used, 0..1.
@@ -48,7 +46,6 @@ class Coverage:
     one_way: float
     loads_kg: tuple[float, ...]
     temperature_c: tuple[float, float] | None
-    starts: int
     repeats: int
     driven_s: float
     usable: float
@@ -83,7 +80,6 @@ def coverage_of(dataset: Dataset) -> Coverage:
         one_way=max(_one_way(trial.motion.position) for trial in dataset.trials),
         loads_kg=_loads_kg(recordings),
         temperature_c=(float(warmth.min()), float(warmth.max())) if len(warmth) and np.isfinite(warmth).all() else None,
-        starts=sum(_starts(trial, dataset.scales.slow) for trial in dataset.trials),
         repeats=_repeats(recordings),
         driven_s=sum(_driven_s(trial) for trial in dataset.trials),
         usable=float(np.mean(np.concatenate([trial.signals.usable for trial in dataset.trials]))),
@@ -98,15 +94,6 @@ def _one_way(position: FloatArray) -> float:
 def _loads_kg(recordings: list[Recording]) -> tuple[float, ...]:
     told = (one.conditions.get("load_kg") for one in recordings)
     return tuple(sorted({float(load) for load in told if isinstance(load, int | float)}))
-
-
-def _starts(trial: Trial, slow: float) -> int:
-    """How often the joint comes from rest to a speed at which its direction is sure."""
-    regime, speed = trial.regime, np.abs(trial.motion.velocity[trial.picked])
-    stuck, sure = regime == Regime.STUCK, speed > SLIDES * slow
-    state = np.where(stuck, 0, np.where(sure, 1, -1))
-    state = state[state >= 0]
-    return int(np.count_nonzero((state[:-1] == 0) & (state[1:] == 1)))
 
 
 def _repeats(recordings: list[Recording]) -> int:

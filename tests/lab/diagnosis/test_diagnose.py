@@ -303,7 +303,19 @@ def test_one_disturbed_trial_is_named():
     disturbed = made[4].channels["torque_n_m"]
     disturbed += 0.2 * np.sin(2.0 * made[4].channels["time_s"])
     found = diagnosis_of(made)
-    assert any(f"'{made[4].name}' is unlike the others" in problem for problem in found.data_problems)
+    told = next(problem for problem in found.data_problems if "unlike" in problem)
+    assert f"'{made[4].name}' is unlike the others" in told
+    assert "leave it out if it was disturbed" in told
+
+
+def test_of_several_odd_trials_none_is_to_be_left_out_alone():
+    made = recordings(seed=3)
+    for at, size in ((4, 0.2), (5, 0.13)):
+        made[at].channels["torque_n_m"] += size * np.sin(2.0 * made[at].channels["time_s"])
+    problems = data_problems(fit_model(make_dataset(made, FACTS, Processing()), DEFAULT))
+    (told,) = [problem for problem in problems if "unlike" in problem]
+    assert f"trials '{made[4].name}', '{made[5].name}' are unlike the others: their errors are" in told
+    assert told.endswith("look at what they share, and leave none out for its error alone")
 
 
 def test_a_trial_of_rest_is_not_used_and_one_that_only_reverses_is():
@@ -343,7 +355,7 @@ def test_a_formula_with_an_impossible_sign_is_no_name():
     assert not found.candidates[0].physical
     assert found.verdict == "unknown-effect", found.sentence
     assert found.driver == "load_kg against motion"
-    assert "would need a sign or size that is not physical" in found.sentence
+    assert "cannot be it: it would be " in found.sentence
 
 
 def test_nothing_to_judge_is_an_error():

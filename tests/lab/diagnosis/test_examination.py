@@ -52,6 +52,7 @@ def test_near_reversals_and_at_starts_a_strong_score_alone_does_not_make_a_gain_
         ({"gain": Gain(0.004, 0.001, 0.01)}, ["gain under 0.5%"]),
         ({"gain": Gain(0.2, -0.01, 0.4)}, ["gain not sure"]),
         ({"physical": False, "p_value": 0.02}, ["may be luck", "impossible size, sign or shape"]),
+        ({"physical": False, "impossible": "it would be -2, allowed 0 to 1"}, ["it would be -2, allowed 0 to 1"]),
     ],
 )
 def test_what_a_candidate_lacks_is_told(changed, doubt):

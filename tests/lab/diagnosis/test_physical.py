@@ -13,6 +13,7 @@ from compensator.lab.diagnosis.physical import (
     is_physical,
     is_possible,
     is_within_bounds,
+    why_not_physical,
 )
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.screening.base import Base, Block
@@ -53,7 +54,7 @@ def test_hardly_more_than_the_owner_tells_of_is_not_missing(name, shape, possibl
     item = Evidence(Block(name, column[:, None], 0, 15, shape), 50.0, 400.0, 0.001, column)
     told = Facts(backlash_rad=0.005, stiffness_n_m_rad=0.02 * (20.0 * np.pi) ** 2, arm_inertia_kg_m2=0.02)
     for facts, expected in ((told, possible), (Facts(), True)):
-        dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"), facts=facts)
+        dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque", unit="N m"), facts=facts)
         fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
         gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), column)], fit=fit, show_in="moving")
         assert is_possible(gathered, item) == expected
@@ -83,7 +84,8 @@ def test_a_distance_at_the_lower_end_of_a_scan_may_be_shorter(monkeypatch, dista
     gathered: Any = SimpleNamespace(fit=SimpleNamespace(dataset=SimpleNamespace(trials=[trial])))
     block = Block("pre_sliding", np.zeros((1, 1)), 0, 1, (distance_rad,))
     item = Evidence(block, 50.0, 60.0, 0.001, np.zeros(1))
-    monkeypatch.setattr(physical, "is_possible", lambda *_: True)
+    gathered.fit.dataset.facts, gathered.fit.dataset.effort_definition = Facts(), SimpleNamespace(unit="N m")
+    monkeypatch.setattr(physical, "_why_not_possible", lambda *_: "")
     assert is_before_scan(gathered, item) == before
     assert is_physical(gathered, item) != before
 
@@ -103,7 +105,45 @@ def test_a_shape_with_every_value_at_a_lower_end_may_be_of_the_measuring_chain(s
 def test_friction_that_rises_over_a_session_is_no_warm_up(excess, possible):
     column = np.exp(-np.arange(200.0) / 50.0)
     item = Evidence(Block("warm_up", column[:, None], 0, 4, (50.0,)), 50.0, 400.0, 0.001, column)
-    dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"), facts=Facts())
+    dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque", unit="N m"), facts=Facts())
     fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
     gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), excess * column)], fit=fit, show_in="sliding")
     assert is_possible(gathered, item) == possible
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "share", "why"),
+    [
+        ("backlash", (0.009,), 1.0, "the rig tells of as much already (free play 0.009 rad)"),
+        ("backlash", (0.011,), 1.0, ""),
+        ("backlash", (0.011,), -0.5, "it would be -0.5, allowed 0.3 to 3"),
+        ("elasticity", (20.0, 0.7, 0.4), 1.0, "its damping, of critical 0.7 is the most that it can be"),
+        ("pre_sliding", (2e-4,), 1.0, "pre-sliding distance 0.0002 rad is the least that it can be"),
+        ("pre_sliding", (2e-3,), -1.0, "it would be -1 N m, allowed 0 or more"),
+        ("pre_sliding", (2e-3,), 0.01, "it would be under 50% of dry friction"),
+    ],
+)
+def test_what_is_impossible_about_it_is_told_with_its_number(name, shape, share, why):
+    column = np.sin(np.arange(200.0))
+    item = Evidence(Block(name, column[:, None], 0, 15, shape), 50.0, 4000.0, 0.001, column)
+    told = Facts(backlash_rad=0.005)
+    motion = SimpleNamespace(position_span=2.0, step_s=0.01, facts=told)
+    dataset = SimpleNamespace(
+        effort_definition=SimpleNamespace(quantity="torque", unit="N m"),
+        facts=told,
+        trials=[SimpleNamespace(motion=motion)],
+    )
+    fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
+    gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), share * column)], fit=fit, show_in="sliding")
+    assert why_not_physical(gathered, item) == why
+
+
+def test_what_the_measuring_chain_may_make_says_so(monkeypatch):
+    column = np.sin(np.arange(200.0))
+    item = Evidence(Block("backlash", column[:, None], 0, 15, (0.02,)), 50.0, 4000.0, 0.001, column)
+    dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"), facts=Facts())
+    bases = [Base(np.zeros((200, 1)), column), Base(np.zeros((200, 1)), column)]
+    fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
+    gathered: Any = SimpleNamespace(bases=bases, fit=fit, show_in="moving", noise=None)
+    monkeypatch.setattr(physical, "is_made_by_chain", lambda *_: True)
+    assert why_not_physical(gathered, item) == "the measuring chain alone may make it"

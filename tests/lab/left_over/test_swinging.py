@@ -26,7 +26,7 @@ from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 BENCH = Bench(duration_s=9.0, noise_memory=0.0)
 SUPPLY_V, RIPPLE_HZ = 24.0, 1.7
 SMALL_RIPPLE = 0.002
-NEAR_SHARE, NEAR_SEED = 0.0015, 6
+NEAR_SHARE, NEAR_SEED = 0.0025, 6
 
 
 def recorded(extra=None, seed=0, noise=BENCH.noise) -> list[Recording]:
@@ -118,7 +118,7 @@ def test_a_ripple_that_is_too_small_for_its_power_alone_is_told_by_a_matched_fil
 
 def test_a_ripple_does_not_hide_itself_as_noise_of_its_own_frequency():
     """In few trials: noise that is learnt from all that is left has it in a band, over which it is spread."""
-    found = rippled(fitted(rippling(recorded(seed=2, noise=0.004)[:6], 0.003, at_hz=(0.6,))))
+    found = rippled(fitted(rippling(recorded(seed=2, noise=0.004)[:6], 0.005, at_hz=(0.6,))))
     assert found is not None
     assert found.frequency_hz == pytest.approx(0.6, rel=0.05)
 
@@ -258,7 +258,7 @@ def test_a_line_in_a_few_trials_is_theirs_alone():
 
 
 def test_trials_of_one_motion_tell_once():
-    """What the model misses of a motion comes back with it, whatever the load: here in two motions of six."""
+    """What the model misses of a motion comes back with it, whatever the load: here in two motions of three."""
     few = plans()[:6]
     loads = (0.02, 0.05, 0.1, 0.15, 0.2)
     many = [*few, *(replace(one, load_kg=load) for one in few[:2] for load in loads)]
@@ -273,8 +273,19 @@ def test_trials_of_one_motion_tell_once():
         for time_s in [one.channels["time_s"]]
     ]
     fit = fitted(swung)
-    assert motions_of(fit.dataset.trials).tolist() == [0, 1, 2, 3, 4, 5, *[0] * len(loads), *[1] * len(loads)]
+    assert motions_of(fit.dataset.trials).tolist() == [0, 1, 2, 0, 1, 2, *[0] * len(loads), *[1] * len(loads)]
     assert swing(fit) is None
+
+
+def test_a_motion_that_begins_later_is_the_same_one():
+    """A harmonic of it that is missed is in both, in another phase."""
+    few = plans()[:3]
+    later = [
+        replace(one, load_kg=0.1, sines=[(size, hz, phase + 2.0 * np.pi * hz * 1.7) for size, hz, phase in one.sines])
+        for one in few
+    ]
+    trials = fitted(recordings(Joint(), BENCH, [*few, *later])).dataset.trials
+    assert motions_of(trials).tolist() == [0, 1, 2, 0, 1, 2]
 
 
 def ringing(x: Truth) -> np.ndarray:

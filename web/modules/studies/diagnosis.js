@@ -95,7 +95,7 @@ async function look(place, { effect, title }, { path, linked, model_id, button }
 export function evidence(one) {
   const gain = `The held-out error would ${one.gain >= 0 ? "fall" : "rise"} by ${interval(Math.abs(one.gain), ...ends(one), (value) => percent(value, 1))}.`;
   const sure = one.gain_low > 0 ? "All of the interval is a gain." : "The interval includes no gain at all.";
-  const chance = one.p_value === null || one.p_value === undefined ? "" : ` Chance alone would do as well with p ${chanceIs(one.p_value)}.`;
+  const chance = one.p_value === null || one.p_value === undefined ? "" : ` Of this effect alone, chance would do as well with p ${chanceIs(one.p_value)}.`;
   const lacks = one.why_not.length ? ` Not named: ${one.why_not.join(", ")}.` : "";
   const like = one.confused_with.length ? ` These data confuse it with ${spaced(one.confused_with).join(", ")} (d′ = ${number(one.d_prime, 2)}; from 6 on the name is sure).` : "";
   return `${gain} ${sure}${chance}${lacks}${like}`;
