@@ -181,7 +181,7 @@ def _candidate(
     }
     nearest = max(rivals.values(), default=0.0)
     coefficients = one.fit.coefficients_of(one.effect.name)
-    physical = coefficients is not None and bool(np.any(coefficients != 0.0))
+    explains_some = coefficients is not None and bool(np.any(coefficients != 0.0))
     return Candidate(
         effect=one.effect,
         shape=one.item.block.shape,
@@ -192,8 +192,7 @@ def _candidate(
         before=before.relative,
         after=one.after.relative,
         gain=held_out_gain(before, one.after),
-        physical=physical,
-        impossible="" if physical else "within its bounds it explains nothing of a start",
+        impossible="" if explains_some else "within its bounds it explains nothing of a start",
         picture=picture_of_breakaway(one.fit, one.effect),
         rows="breakaway",
     )

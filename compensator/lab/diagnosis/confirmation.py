@@ -27,7 +27,7 @@ def is_confirmed(candidate: Candidate) -> bool:
 
 def is_sure(candidate: Candidate) -> bool:
     """Whether a candidate is confirmed but for the size and sign that it would need."""
-    return not doubts(replace(candidate, physical=True, refused=""))
+    return not doubts(replace(candidate, impossible="", refused=""))
 
 
 def doubts(candidate: Candidate) -> list[str]:
@@ -43,9 +43,9 @@ def doubts(candidate: Candidate) -> list[str]:
         f"explains under {LEAST_OF_EFFORT:.2%} of the effort": explained >= LEAST_OF_EFFORT**2,
         f"gain under {least:.1%}": gain.value >= least,
         "gain not sure": gain.low > 0.0 or (strong and candidate.rows == "sliding"),
-        candidate.impossible or "impossible size, sign or shape": candidate.physical,
     }
-    return [doubt for doubt, holds in asked.items() if not holds] + ([candidate.refused] if candidate.refused else [])
+    told = [reason for reason in (candidate.impossible, candidate.refused) if reason]
+    return [doubt for doubt, holds in asked.items() if not holds] + told
 
 
 def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:

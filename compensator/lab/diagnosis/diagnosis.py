@@ -41,11 +41,10 @@ class Candidate:
         rivals: effects whose evidence mostly vanishes once this one is in the model.
         before, after: relative held-out error without and with it.
         gain: relative fall of that error, rows counting by how well the other trials can predict them.
-        physical: all its coefficients lie within their physical bounds when fitted freely.
         picture: why.
         refused: why it is not the answer though its own numbers confirm it; empty where nothing speaks against it.
         errors: held out, with it, of its family's rows; None of starts from rest.
-        impossible: why it is not physical, in words; empty where it is, or where nothing more is known.
+        impossible: why its size, sign or shape are not physical, in words; empty where they are.
         rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
     """
 
@@ -58,12 +57,16 @@ class Candidate:
     before: float
     after: float
     gain: Gain
-    physical: bool
     picture: Picture | None
     rows: EffectRows = "sliding"
     refused: str = ""
     impossible: str = ""
     errors: HeldOut | None = field(default=None, repr=False)
+
+    @property
+    def physical(self) -> bool:
+        """Whether size, sign and shape are such that it can be the effect."""
+        return not self.impossible
 
 
 @dataclass(frozen=True)

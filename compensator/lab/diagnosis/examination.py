@@ -7,7 +7,7 @@ import numpy as np
 from compensator.lab import progress
 from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.physical import is_physical, why_not_physical
+from compensator.lab.diagnosis.physical import why_not_physical
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import MotionRows
@@ -47,7 +47,7 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     blocks = [block for block in gathered.named if block.name in asked]
     given = [kept_evidence(gathered.with_block(item.block).bases, blocks, gathered.noise) for item in evidence]
     spans = _spans(gathered)
-    possible = [item for item in evidence if is_physical(gathered, item)]
+    possible = [item for item in evidence if not why_not_physical(gathered, item)]
     found: list[Candidate] = []
     for index, item in enumerate(evidence):
         alike = _alike(item, spans)
@@ -141,7 +141,6 @@ def _candidate(
     gathered: Candidates, item: Evidence, errors: tuple[HeldOut, HeldOut], rivals: set[str], nearest: float
 ) -> Candidate:
     before, after = errors
-    impossible = why_not_physical(gathered, item)
     return Candidate(
         effect=effect_named(item.block.name),
         shape=item.block.shape,
@@ -152,9 +151,8 @@ def _candidate(
         before=before.relative,
         after=after.relative,
         gain=held_out_gain(before, after),
-        physical=not impossible,
         picture=picture_of(gathered, item),
         errors=after,
-        impossible=impossible,
+        impossible=why_not_physical(gathered, item),
         rows=gathered.show_in,
     )

@@ -16,18 +16,13 @@ TOLD = "the rig tells of as much already"
 ROUNDING = 1e-6  # of a shape that was looked for by its logarithm
 
 
-def is_physical(gathered: Candidates, item: Evidence) -> bool:
-    """Whether size and shape are such that it can be the effect."""
-    return not why_not_physical(gathered, item)
-
-
 def why_not_physical(gathered: Candidates, item: Evidence) -> str:
     """Why size, sign or shape are such that it cannot be the effect, in words; empty where it can."""
     if is_past_scan(gathered, item):
         return f"{_shape(gathered, item, int(np.argmax(_past(gathered, item))))} is the most that it can be"
     if is_before_scan(gathered, item):
         return f"{_shape(gathered, item)} is the least that it can be"
-    return _why_not_possible(gathered, item)
+    return why_not_possible(gathered, item)
 
 
 def why_impossible(fit: Fit, name: str) -> str:
@@ -47,16 +42,12 @@ def why_impossible(fit: Fit, name: str) -> str:
     return ""
 
 
-def is_possible(gathered: Candidates, item: Evidence) -> bool:
-    """Whether the freely fitted coefficients are within bounds, and as large as what they stand in the place of.
+def why_not_possible(gathered: Candidates, item: Evidence) -> str:
+    """Why the freely fitted coefficients cannot be the effect's, in words; empty where they can.
 
-    What the measuring chain makes near reversals is nothing physical, and what the owner tells of is not missing.
+    They are within bounds, and as large as what they stand in the place of. What the measuring chain makes near
+    reversals is nothing physical, and what the owner tells of is not missing.
     """
-    return not _why_not_possible(gathered, item)
-
-
-def _why_not_possible(gathered: Candidates, item: Evidence) -> str:
-    """Why it is not possible, in words; empty where it is."""
     if not is_within_bounds(gathered, item):
         return f"it would be {_size(gathered, item)}"
     if is_too_small(gathered, item):

@@ -23,9 +23,7 @@ def missing_in_words(best: Candidate, p_value: float) -> str:
 
 def unknown_in_words(nearest: Candidate, driver: str, p_value: float) -> str:
     """The answer where what is left varies with a driver, and no formula follows that, nor does the nearest one."""
-    why = "does not follow its curve"
-    if not nearest.physical:
-        why = f"cannot be it: {nearest.impossible or 'it would need a sign or size that is not physical'}"
+    why = "does not follow its curve" if nearest.physical else f"cannot be it: {nearest.impossible}"
     look = ""
     if driver == HYSTERESIS_DRIVER:
         driver, look = "where the joint has turned back, as what bends along and slides does", f" {LOOK_AT_HOSES}"

@@ -31,14 +31,14 @@ from compensator.lab.screening.evidence import Evidence
 )
 def test_score_luck_and_gain_must_all_speak_for_it(score, p_value, gain, low, confirmed):
     gained = Gain(gain, low, 2.0 * gain)
-    candidate = Candidate(effect_named("spring"), (), score, p_value, 7.0, (), 0.1, 0.08, gained, True, None)
+    candidate = Candidate(effect_named("spring"), (), score, p_value, 7.0, (), 0.1, 0.08, gained, None)
     assert is_confirmed(candidate) == confirmed
 
 
 @pytest.mark.parametrize(("rows", "confirmed"), [("sliding", True), ("moving", False), ("breakaway", False)])
 def test_near_reversals_and_at_starts_a_strong_score_alone_does_not_make_a_gain_sure(rows, confirmed):
     gained = Gain(0.3, -0.01, 0.4)
-    candidate = Candidate(effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, gained, True, None, rows)
+    candidate = Candidate(effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, gained, None, rows)
     assert is_confirmed(candidate) == confirmed
 
 
@@ -51,13 +51,15 @@ def test_near_reversals_and_at_starts_a_strong_score_alone_does_not_make_a_gain_
         ({"before": 0.0006}, ["explains under 0.05% of the effort"]),
         ({"gain": Gain(0.004, 0.001, 0.01)}, ["gain under 0.5%"]),
         ({"gain": Gain(0.2, -0.01, 0.4)}, ["gain not sure"]),
-        ({"physical": False, "p_value": 0.02}, ["may be luck", "impossible size, sign or shape"]),
-        ({"physical": False, "impossible": "it would be -2, allowed 0 to 1"}, ["it would be -2, allowed 0 to 1"]),
+        (
+            {"impossible": "it would be -2, allowed 0 to 1", "p_value": 0.02},
+            ["may be luck", "it would be -2, allowed 0 to 1"],
+        ),
     ],
 )
 def test_what_a_candidate_lacks_is_told(changed, doubt):
     gained = Gain(0.2, 0.1, 0.4)
-    one = Candidate(effect_named("spring"), (), 5.0, 0.001, 7.0, (), 0.1, 0.08, gained, True, None)
+    one = Candidate(effect_named("spring"), (), 5.0, 0.001, 7.0, (), 0.1, 0.08, gained, None)
     found = replace(one, **changed)
     assert doubts(found) == doubt
     assert is_confirmed(found) == (not doubt)
@@ -74,9 +76,8 @@ def test_in_the_ladder_a_name_is_held_against_the_rows_that_it_shows_in(monkeypa
 
     monkeypatch.setattr(examination, "held_out", held_out)
     monkeypatch.setattr(examination, "held_out_gain", lambda *_: Gain(0.5, 0.4, 0.6))
-    one = Candidate(
-        effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, Gain(0.3, 0.2, 0.4), True, None, rows
-    )
+    gained = Gain(0.3, 0.2, 0.4)
+    one = Candidate(effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, gained, None, rows)
     found = examination.as_in_the_ladder(one, fit, fit, rows)
     assert asked == [rows] * 2
     assert (found.after, found.gain.value) == (0.05, 0.5)
@@ -93,16 +94,16 @@ def test_in_the_ladder_a_name_is_held_against_the_rows_that_it_shows_in(monkeypa
 )
 def test_what_explains_less_of_the_effort_than_sensors_are_linear_is_not_confirmed(before, after, confirmed):
     gained = Gain(1.0 - after / before, 0.005, 0.1)
-    candidate = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), before, after, gained, True, None)
+    candidate = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), before, after, gained, None)
     assert is_confirmed(candidate) == confirmed
 
 
 @pytest.mark.parametrize("rows", ["sliding", "moving"])
 def test_a_sign_or_size_that_cannot_be_is_the_shadow_of_something_else(rows):
     gained = Gain(0.2, 0.1, 0.3)
-    for physical in (True, False):
-        candidate = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), 0.1, 0.08, gained, physical, None, rows)
-        assert is_confirmed(candidate) == physical
+    candidate = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), 0.1, 0.08, gained, None, rows)
+    assert is_confirmed(candidate)
+    assert not is_confirmed(replace(candidate, impossible="it would be -2, allowed 0 to 1"))
 
 
 def test_the_shape_that_fits_best_speaks_for_its_effect_whether_it_can_be_or_not():

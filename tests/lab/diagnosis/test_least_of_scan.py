@@ -25,5 +25,5 @@ def test_what_is_a_lag_but_for_being_the_least_of_its_scan_is_not_named():
     made = recordings(Joint(extra=early), trials=[*plans(), *SHAKEN], seed=4)
     found = diagnose(fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS)))
     first = next(one for one in found.candidates if one.effect.name == "frictional_lag")
-    assert is_confirmed(replace(first, physical=True))
+    assert is_confirmed(replace(first, impossible=""))
     assert (found.verdict, first.physical) == ("nothing", False)

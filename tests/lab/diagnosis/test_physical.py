@@ -10,10 +10,9 @@ from compensator.lab.diagnosis import physical
 from compensator.lab.diagnosis.physical import (
     is_before_scan,
     is_past_scan,
-    is_physical,
-    is_possible,
     is_within_bounds,
     why_not_physical,
+    why_not_possible,
 )
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.screening.base import Base, Block
@@ -57,7 +56,7 @@ def test_hardly_more_than_the_owner_tells_of_is_not_missing(name, shape, possibl
         dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque", unit="N m"), facts=facts)
         fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
         gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), column)], fit=fit, show_in="moving")
-        assert is_possible(gathered, item) == expected
+        assert (not why_not_possible(gathered, item)) == expected
 
 
 @pytest.mark.parametrize(
@@ -85,9 +84,9 @@ def test_a_distance_at_the_lower_end_of_a_scan_may_be_shorter(monkeypatch, dista
     block = Block("pre_sliding", np.zeros((1, 1)), 0, 1, (distance_rad,))
     item = Evidence(block, 50.0, 60.0, 0.001, np.zeros(1))
     gathered.fit.dataset.facts, gathered.fit.dataset.effort_definition = Facts(), SimpleNamespace(unit="N m")
-    monkeypatch.setattr(physical, "_why_not_possible", lambda *_: "")
+    monkeypatch.setattr(physical, "why_not_possible", lambda *_: "")
     assert is_before_scan(gathered, item) == before
-    assert is_physical(gathered, item) != before
+    assert bool(why_not_physical(gathered, item)) == before
 
 
 @pytest.mark.parametrize(
@@ -108,7 +107,7 @@ def test_friction_that_rises_over_a_session_is_no_warm_up(excess, possible):
     dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque", unit="N m"), facts=Facts())
     fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
     gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), excess * column)], fit=fit, show_in="sliding")
-    assert is_possible(gathered, item) == possible
+    assert (not why_not_possible(gathered, item)) == possible
 
 
 @pytest.mark.parametrize(

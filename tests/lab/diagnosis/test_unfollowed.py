@@ -76,6 +76,6 @@ def test_a_curve_is_of_use_on_other_trials_for_sure_or_no_unknown_effect(monkeyp
 def test_what_builds_on_nothing_is_the_worse_for_nothing_that_is_missing():
     gathered: Any = None
     item = Evidence(Block("spring", np.zeros((1, 1)), 0, 1), 50.0, 60.0, 0.001, np.zeros(1))
-    sure = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), 0.1, 0.08, Gain(0.2, 0.1, 0.3), True, None)
+    sure = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), 0.1, 0.08, Gain(0.2, 0.1, 0.3), None)
     assert is_confirmed(sure)
     assert not _leaves_nothing(gathered, sure, item, item)
