@@ -83,6 +83,7 @@ def test_the_engineer_adds_the_missing_effect_and_the_error_falls(open_page):
     first.get_by_role("button", name="Add").click()
     page.get_by_text("It helps: keep it.").wait_for()
     verdict.get_by_text("the error falls from").wait_for()
+    verdict.get_by_text("Repeats alone differ by").wait_for()
     page.locator("[aria-label='Ladder'] tbody tr").nth(1).wait_for(state="attached")
     after = held_out_errors(page)
     assert after[0] == before[0]
