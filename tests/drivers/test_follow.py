@@ -67,8 +67,11 @@ class DynamixelProgram:
         self.goals = dynamixel.GroupSyncWrite(self.port, self.host, 100, 2)
         self.found = dynamixel.GroupSyncRead(self.port, self.host, 132, 4)
         self.found.addParam(1)
-        for address, value in ((64, 0), (11, 16), (98, 25), (64, 1)):  # PWM, a bus watchdog of 0.5 s, on
+        for address, value in ((64, 0), (11, 16), (98, 25)):  # off, PWM, a bus watchdog of 0.5 s
             assert self.host.write1ByteTxRx(self.port, 1, address, value)[0] == 0
+        # a change of mode sets the goal to full PWM, which would be driven until the first cycle
+        assert self.host.write2ByteTxRx(self.port, 1, 100, 0)[0] == 0
+        assert self.host.write1ByteTxRx(self.port, 1, 64, 1)[0] == 0
 
     def cycle(self, push):
         self.goals.clearParam()
