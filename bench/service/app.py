@@ -7,7 +7,7 @@ from contextlib import asynccontextmanager
 from functools import partial
 
 import anyio.to_thread
-from fastapi import APIRouter, FastAPI
+from fastapi import FastAPI
 
 from bench import __version__
 from bench.commission.guide import ENDED, Guide
@@ -22,10 +22,10 @@ from bench.service.auth.access import Access
 from bench.service.auth.audit_trail import AuditTrail, AuditWriter
 from bench.service.auth.token_register import REFRESH_S
 from bench.service.http import conditional, openapi, page, problems, turns
+from bench.service.http.api_router import PREFIX
 from bench.service.http.faults import Faults
 from bench.service.http.guard import Guard
 from bench.service.http.limits import Limits
-from bench.service.http.openapi import PREFIX
 from bench.service.lab import Lab, LabHere
 from bench.service.live.live_events import LiveEvents
 from bench.service.routes import (
@@ -174,6 +174,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
         version=__version__,
         summary="Bench driver and test service for a geared servo joint",
         description=DESCRIPTION,
+        routes=[route for module in _ROOMS for route in module.router.routes],
         openapi_url=f"{PREFIX}/openapi.json",
         docs_url=None,  # their pages load scripts from elsewhere
         redoc_url=None,
@@ -189,10 +190,6 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     compute.install(app)
     problems.install(app)
     conditional.install(app)
-    api = APIRouter(prefix=PREFIX)
-    for module in _ROOMS:
-        api.include_router(module.router)
-    app.include_router(api)
     page.install(app)
     openapi.install(app)
     app.add_middleware(Limits, access=access)

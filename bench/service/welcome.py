@@ -8,7 +8,7 @@ from bench.control.drive_factory import is_simulated
 from bench.service.auth.access import is_loopback
 from bench.service.auth.token_register import Tokens
 from bench.service.auth.tokens import ENVIRONMENT, TOKEN_VARIABLE, token_file
-from bench.service.http.openapi import PREFIX
+from bench.service.http.api_router import PREFIX
 from bench.store.address import shown
 
 

@@ -11,7 +11,6 @@ from fastapi import FastAPI
 
 from bench.service.http.problems import MEANINGS, MEDIA_TYPE, Problem
 
-PREFIX = "/api/v1"  # of every path
 FILE = Path(__file__).with_name("examples.json")
 
 

@@ -3,15 +3,16 @@
 from datetime import datetime
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Query
+from fastapi import Depends, Query
 from pydantic import BaseModel, Field
 
 from bench.service.auth.access import require_admin
+from bench.service.http.api_router import api_router
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.services import StoreOf
 
-router = APIRouter(prefix="/audit", tags=["audit"], dependencies=[Depends(require_admin)])
+router = api_router("/audit", tags=["audit"], dependencies=[Depends(require_admin)])
 
 
 class Deed(BaseModel):

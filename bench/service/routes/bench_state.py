@@ -6,7 +6,7 @@
 import asyncio
 from contextlib import suppress
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.fields import FieldInfo
 from starlette.requests import ClientDisconnect
@@ -19,13 +19,14 @@ from bench.json_types import Json
 from bench.service.auth.access import Viewer, allow_read, require_viewer
 from bench.service.auth.audit_trail import note
 from bench.service.compute import at_bench
+from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.live.status import Status, status_of
 from bench.service.routes.leases import LeaseOf, lease_now, require_lease
 from bench.service.services import CalibratorOf, ConductorOf, GuideOf, RunnerOf
 from drivers.contract import Description
 
-router = APIRouter(tags=["bench"])
+router = api_router(tags=["bench"])
 NO_REASON = "stopped over REST"
 LONGEST_REASON = 4096  # bytes of the body
 REASON_WAIT_S = 0.05  # what a slow body is given; a whole one has arrived with its head

@@ -3,13 +3,14 @@
 from datetime import datetime
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, Request
+from fastapi import Depends, Path, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.json_types import Json
 from bench.runs.queue.items import known_item
 from bench.service.auth.access import Operator, allow_read, require_operator
 from bench.service.auth.audit_trail import note
+from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.http.repeated_start import Key, once
 from bench.service.routes.queue_models import Added, NewQueueItem, Tags
@@ -17,7 +18,7 @@ from bench.service.services import LabLinkOf, StoreOf
 from bench.store.tables.benches import SeenBench
 from bench.store.tables.lab_queue import LabItem, NewLabItem
 
-router = APIRouter(tags=["bench"], dependencies=[Depends(allow_read)])
+router = api_router(tags=["bench"], dependencies=[Depends(allow_read)])
 ItemId = Annotated[int, Path(ge=1, le=2**31 - 1, description="number of the item")]
 MOST_ITEMS = 1000
 

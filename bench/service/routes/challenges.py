@@ -5,13 +5,14 @@ from datetime import datetime
 from itertools import islice
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from fastapi import APIRouter, Depends, Path, Request, Response
+from fastapi import Depends, Path, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.errors import ParameterError
 from bench.service.auth.access import allow_read, require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_lab
+from bench.service.http.api_router import api_router
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.services import StoreOf
@@ -21,7 +22,7 @@ if TYPE_CHECKING:  # imported when first needed
     from bench.evaluation.challenge.guess import Score
     from bench.evaluation.challenge.kept import KeptChallenge
 
-router = APIRouter(prefix="/challenges", tags=["challenges"], dependencies=[Depends(allow_read)])
+router = api_router("/challenges", tags=["challenges"], dependencies=[Depends(allow_read)])
 ChallengeId = Annotated[int, Path(ge=1, description="number of the challenge, which is that of its experiment")]
 Level = Literal["easy", "medium", "hard"]
 

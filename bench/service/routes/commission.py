@@ -4,7 +4,7 @@ import math
 from dataclasses import asdict
 from typing import Literal
 
-from fastapi import APIRouter, Depends, Request, Response
+from fastapi import Depends, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.commission.bench_file import bench_text, evidence_text
@@ -17,6 +17,7 @@ from bench.commission.steps import STEPS
 from bench.runs.bench_control import BenchControl
 from bench.service.auth.access import Operator, allow_read
 from bench.service.auth.audit_trail import note
+from bench.service.http.api_router import api_router
 from bench.service.http.downloads import attachment
 from bench.service.http.openapi import Document
 from bench.service.http.problems import problems
@@ -25,7 +26,7 @@ from bench.service.routes.leases import LeaseOf, require_lease
 from bench.service.services import ConductorOf, GuideOf, RunnerOf
 from bench.store.errors import NotFoundError
 
-router = APIRouter(prefix="/commission", tags=["commission"], dependencies=[Depends(allow_read)])
+router = api_router("/commission", tags=["commission"], dependencies=[Depends(allow_read)])
 BENCH_FILE, EVIDENCE_FILE = "bench.toml", "bench.evidence.json"
 FILE = "application/octet-stream"  # to be kept, not shown
 QUESTION = {

@@ -3,18 +3,19 @@
 Reading needs the drives to be opened, so it is a POST as well: nothing connects to a drive on GET.
 """
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.control import drive_faults
 from bench.control.drive_faults import faults_in_words
 from bench.service.auth.audit_trail import note
 from bench.service.compute import at_bench
+from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.routes.leases import require_lease
 from bench.service.services import RunnerOf
 
-router = APIRouter(prefix="/drive", tags=["bench"])
+router = api_router("/drive", tags=["bench"])
 
 
 class DriveState(BaseModel):

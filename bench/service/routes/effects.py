@@ -2,10 +2,11 @@
 
 from typing import TYPE_CHECKING, Annotated
 
-from fastapi import APIRouter, Depends, Path, Request
+from fastapi import Depends, Path, Request
 
 from bench.service.auth.access import allow_read
 from bench.service.compute import in_worker
+from bench.service.http.api_router import api_router
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.study.models.effects import Effect, Example
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 else:
     from bench.service.later import bench
 
-router = APIRouter(prefix="/effects", tags=["effects"], dependencies=[Depends(allow_read)])
+router = api_router("/effects", tags=["effects"], dependencies=[Depends(allow_read)])
 
 
 class Catalogue(Page):

@@ -1,18 +1,19 @@
 """/experiments/plan: what a start would move, how far and for how long; nothing moves and nothing is recorded."""
 
-from fastapi import APIRouter, Depends
+from fastapi import Depends
 from pydantic import BaseModel, Field
 
 from bench.config.configuration import BenchConfiguration
 from bench.experiments.kind import TrialPlan
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.service.auth.access import require_viewer
+from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.routes.queue_models import NewExperiment
 from bench.service.routes.refused_fields import told_at_its_fields
 from bench.service.services import RunnerOf
 
-router = APIRouter(tags=["experiments"], dependencies=[Depends(require_viewer)])
+router = api_router(tags=["experiments"], dependencies=[Depends(require_viewer)])
 
 
 class PlannedStart(BaseModel):

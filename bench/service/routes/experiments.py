@@ -5,7 +5,7 @@ from contextlib import suppress
 from pathlib import Path as FilePath
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi import Depends, Path, Query, Request, Response
 from fastapi.responses import FileResponse, StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.background import BackgroundTask
@@ -19,6 +19,7 @@ from bench.service.auth.audit_trail import note
 from bench.service.auth.tokens import Caller
 from bench.service.compute import at_bench
 from bench.service.http import conditional
+from bench.service.http.api_router import api_router
 from bench.service.http.downloads import PARQUET, PARQUET_ANSWER, attachment
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
@@ -32,7 +33,7 @@ from bench.store import Store
 from bench.store.errors import StoreError
 from bench.store.tables.tags import LONGEST_TAG
 
-router = APIRouter(tags=["experiments"], dependencies=[Depends(allow_read)])
+router = api_router(tags=["experiments"], dependencies=[Depends(allow_read)])
 ExperimentId = Annotated[int, Path(ge=1, description="number of the experiment")]
 
 

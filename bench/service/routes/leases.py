@@ -2,15 +2,16 @@
 
 from typing import Annotated, cast
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.runs.lease import DEFAULT_S, LONGEST_S, SHORTEST_S, Held, Lease
 from bench.service.auth.access import Operator, allow_read, require_admin
 from bench.service.auth.audit_trail import leave_out, note
+from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 
-router = APIRouter(prefix="/lease", tags=["lease"])
+router = api_router("/lease", tags=["lease"])
 Duration = Annotated[float, Field(ge=SHORTEST_S, le=LONGEST_S, description="until it ends, unless it is renewed [s]")]
 
 

@@ -2,12 +2,13 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Header, Path, Query, Request
+from fastapi import Depends, Header, Path, Query, Request
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel
 
 from bench.control.drive_factory import is_simulated
 from bench.service.auth.access import allow_read
+from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.live.jobs import JobRecord, Jobs
 from bench.service.live.live_events import LiveEvents
@@ -17,7 +18,7 @@ from bench.service.services import RunnerOf
 from bench.store.errors import NotFoundError
 
 MOST_ROWS = 2000
-router = APIRouter(prefix="/live", tags=["live"], dependencies=[Depends(allow_read)])
+router = api_router("/live", tags=["live"], dependencies=[Depends(allow_read)])
 AfterRow = Annotated[int, Query(ge=-1, description="only rows after this one; -1: all that are kept")]
 MostRows = Annotated[int, Query(ge=1, le=20_000, description="most rows in one answer; the newest are sent")]
 JobName = Annotated[str, Path(max_length=100, description="as the request gave it in `X-Job`", examples=["b7"])]

@@ -2,13 +2,14 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, Query, Request
+from fastapi import Depends, Path, Query, Request
 
 from bench.runs.queue.campaign import Campaign, CampaignPlan, plan_campaign
 from bench.runs.queue.items import Order
 from bench.runs.queue.overview import queue_state
 from bench.service.auth.access import Operator, allow_read, require_operator
 from bench.service.auth.audit_trail import note
+from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.http.repeated_start import Key, once
 from bench.service.routes.leases import require_lease
@@ -27,7 +28,7 @@ from bench.service.routes.queue_models import (
 )
 from bench.service.services import ConductorOf, RunnerOf, StoreOf
 
-router = APIRouter(tags=["queue"], dependencies=[Depends(allow_read)])
+router = api_router(tags=["queue"], dependencies=[Depends(allow_read)])
 ItemId = Annotated[int, Path(ge=1, le=2**31 - 1, description="number of the item")]
 HOLDER = [Depends(require_lease)]
 

@@ -7,19 +7,20 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import anyio
-from fastapi import APIRouter, Depends, HTTPException, Query, Request
+from fastapi import Depends, HTTPException, Query, Request
 from pydantic import BaseModel, Field
 
 from bench.service.auth.access import require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_worker
+from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.services import StoreOf
 from bench.store import Store
 
 MOST_BYTES = 2 * 1024**3
 LONGEST_FILE_NAME = 200  # bytes
-router = APIRouter(prefix="/recording-sets", tags=["recording sets"], dependencies=[Depends(require_token)])
+router = api_router("/recording-sets", tags=["recording sets"], dependencies=[Depends(require_token)])
 ZIP_BODY = {
     "requestBody": {
         "required": True,

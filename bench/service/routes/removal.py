@@ -2,14 +2,15 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, Query, Request
+from fastapi import Depends, Path, Query, Request
 
 from bench.service.auth.access import require_admin
 from bench.service.auth.audit_trail import note
+from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.services import StoreOf
 
-router = APIRouter(dependencies=[Depends(require_admin)])
+router = api_router(dependencies=[Depends(require_admin)])
 Number = Annotated[int, Path(ge=1, description="its number")]
 Reason = Annotated[
     str, Query(min_length=1, max_length=200, pattern=r"\S", description="why; kept in the audit log, with who and when")

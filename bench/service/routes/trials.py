@@ -5,12 +5,13 @@ from dataclasses import asdict
 from datetime import date
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi import Depends, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field, FiniteFloat
 
 from bench.service.auth.access import allow_read
 from bench.service.http import conditional
+from bench.service.http.api_router import api_router
 from bench.service.http.downloads import PARQUET, PARQUET_ANSWER, attachment, samples_json
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
@@ -20,7 +21,7 @@ from bench.store.records import Trial as StoredTrial
 from bench.store.tables.days import begin_and_end
 from bench.store.tables.trial_search import TrialQuery
 
-router = APIRouter(prefix="/trials", tags=["trials"], dependencies=[Depends(allow_read)])
+router = api_router("/trials", tags=["trials"], dependencies=[Depends(allow_read)])
 LEAST_PER_CHANNEL = 10
 Sorting = Literal["trial", "name", "kind", "outcome", "rows"]
 TrialId = Annotated[int, Path(ge=1, description="number of the trial")]

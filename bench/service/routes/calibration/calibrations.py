@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, Request, Response
+from fastapi import Depends, Path, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench import calibration
@@ -13,13 +13,14 @@ from bench.json_types import Json
 from bench.service.auth.access import allow_read, require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_worker
+from bench.service.http.api_router import api_router
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.services import RunnerOf, StoreOf
 from bench.store import CalibrationRow
 from bench.store.errors import NotFoundError
 
-router = APIRouter(prefix="/calibrations", tags=["calibrations"], dependencies=[Depends(allow_read)])
+router = api_router("/calibrations", tags=["calibrations"], dependencies=[Depends(allow_read)])
 CalibrationId = Annotated[int, Path(ge=1, description="number of the calibration")]
 
 

@@ -3,7 +3,7 @@
 import math
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.errors import BusyError
@@ -13,11 +13,12 @@ from bench.runs.sequential_calibration import Wish
 from bench.service.auth.access import Operator, allow_read
 from bench.service.auth.audit_trail import note
 from bench.service.compute import at_bench
+from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.routes.leases import LeaseOf, require_lease
 from bench.service.services import CalibratorOf, ConductorOf
 
-router = APIRouter(prefix="/calibrations/run", tags=["calibrations"], dependencies=[Depends(allow_read)])
+router = api_router("/calibrations/run", tags=["calibrations"], dependencies=[Depends(allow_read)])
 Load = Annotated[float, Field(ge=0, le=50)]
 Duty = Annotated[float, Field(gt=0, le=1)]
 

@@ -2,12 +2,13 @@
 
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from fastapi import APIRouter, Depends, Path, Request, Response
+from fastapi import Depends, Path, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.service.auth.access import allow_read, require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_lab
+from bench.service.http.api_router import api_router
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.services import RunnerOf, StoreOf
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 else:
     from bench.service.later import bench
 
-router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
+router = api_router("/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 StudyId = Annotated[int, Path(ge=1, description="number of the study")]
 
 

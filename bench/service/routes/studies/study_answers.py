@@ -2,11 +2,12 @@
 
 from typing import TYPE_CHECKING, Annotated
 
-from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from fastapi import Depends, Path, Query, Request, Response
 
 from bench.service.auth.access import allow_read
 from bench.service.compute import in_lab
 from bench.service.http import conditional
+from bench.service.http.api_router import api_router
 from bench.service.http.downloads import attachment
 from bench.service.http.problems import problems
 from bench.service.services import RunnerOf, StoreOf
@@ -33,7 +34,7 @@ else:
     from bench.service.later import bench
 
 REPORT = {"schema": {"type": "string"}, "example": "<!doctype html><title>Study 1</title>..."}
-router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
+router = api_router("/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 StudyId = Annotated[int, Path(ge=1, description="number of the study")]
 ModelId = Annotated[int | None, Query(ge=1, description="which model; without it, the newest of the study")]
 Refine = Annotated[

@@ -1,14 +1,15 @@
 """/studies/check: whether trials can carry a model, and what to hold out, before a study is made of them."""
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.service.auth.access import allow_read, require_viewer
 from bench.service.compute import in_lab
+from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.store import Store
 
-router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
+router = api_router("/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 
 
 class ToCheck(BaseModel):

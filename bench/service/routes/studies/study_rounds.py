@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Annotated
 
-from fastapi import APIRouter, Depends, Path, Request
+from fastapi import Depends, Path, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.errors import BusyError
@@ -11,6 +11,7 @@ from bench.runs.queue.items import Order
 from bench.service.auth.access import Operator, allow_read
 from bench.service.auth.audit_trail import note
 from bench.service.compute import at_bench, in_lab
+from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.http.repeated_start import Key, once
 from bench.service.routes.leases import require_lease
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 else:
     from bench.service.later import bench
 
-router = APIRouter(prefix="/studies", tags=["studies"], dependencies=[Depends(allow_read)])
+router = api_router("/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 StudyId = Annotated[int, Path(ge=1, description="number of the study")]
 
 
