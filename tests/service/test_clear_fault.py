@@ -11,6 +11,7 @@ from bench.config.configuration import default_configuration, parse_configuratio
 from sim_backend.devices.modbus.serve import ModbusSettings, serve_modbus
 from sim_backend.devices.side_channel_client import ask_once
 from tests.cli.conftest import command  # noqa: F401  a fixture
+from tests.queue.waiting import wait_for
 from tests.service.running_service import TOKEN, running_service
 
 FAULT = "over-current"
@@ -102,7 +103,7 @@ def test_the_route_clears_what_was_shown_and_nothing_else(service, fail, device)
         after = bench.clear_fault(FAULT)
     assert (after["fault"], after["drives"][0]["state"]) == ("", "disabled")
     assert device.device.report()["fault"] == "NONE"
-    assert f"cleared the fault '{FAULT}'" in service.client.get("/audit").text
+    wait_for(lambda: f"cleared the fault '{FAULT}'" in service.client.get("/audit").text)  # a thread writes it
 
 
 def test_who_may_not_operate_clears_nothing(service, fail, device):

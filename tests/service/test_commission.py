@@ -8,6 +8,7 @@ import pytest
 from bench.commission.evidence import Finding
 from bench.config.configuration import parse_configuration
 from tests.commission.scripted import scripted_service
+from tests.queue.waiting import wait_for
 
 ANSWERS = [0.25, 50.0, None, 3.0, 0.1, None, 90.0, None, 0.05]
 
@@ -67,9 +68,10 @@ def test_all_answers_lead_to_both_files(joint):
     evidence = [Finding(**one) for one in joint.client.get("/commission/evidence.json").json()]
     assert [one.name for one in evidence] == [one["name"] for one in ended["evidence"]]
     assert (evidence[-1].low, evidence[-1].high) == (0.58, 0.64)
-    details = [one["detail"] for one in joint.client.get("/audit").json()["items"]]
-    assert "answered 'motor_current_a' of the commissioning: 3" in details
-    assert "began commissioning 1" in details
+    told = {"answered 'motor_current_a' of the commissioning: 3", "began commissioning 1"}
+    wait_for(
+        lambda: told <= {one["detail"] for one in joint.client.get("/audit").json()["items"]}
+    )  # a thread writes it
 
 
 def test_what_will_move_stands_beside_the_question(joint):
