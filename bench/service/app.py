@@ -174,7 +174,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
         version=__version__,
         summary="Bench driver and test service for a geared servo joint",
         description=DESCRIPTION,
-        routes=[route for module in _ROOMS for route in module.router.routes],
+        routes=[route for module in (*_ROOMS, page) for route in module.router.routes],
         openapi_url=f"{PREFIX}/openapi.json",
         docs_url=None,  # their pages load scripts from elsewhere
         redoc_url=None,

@@ -18,6 +18,7 @@ from fastapi.responses import FileResponse, HTMLResponse
 from starlette.staticfiles import StaticFiles
 
 from bench.errors import ConfigurationError
+from bench.service.http.api_router import LateRoute
 
 WEB = Path(__file__).resolve().parents[3] / "web"
 PLOTLY = "plotly.min.js"
@@ -25,7 +26,7 @@ FINGERPRINT_LENGTH = 12
 FOR_GOOD = "public, max-age=31536000, immutable"
 FRESH = "no-cache"
 _DAY_S = 86_400
-router = APIRouter(include_in_schema=False)
+router = APIRouter(include_in_schema=False, route_class=LateRoute)
 
 
 def plotly_file() -> Path:
@@ -115,6 +116,5 @@ class _Fresh(StaticFiles):
 
 
 def install(app: FastAPI) -> None:
-    """Serve the page at / and its files under /static."""
-    app.include_router(router)
+    """Serve the files of the page as they are, where the router has none under their name."""
     app.mount("/static", _Fresh(directory=WEB), name="static")
