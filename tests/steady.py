@@ -1,10 +1,11 @@
-"""`python -m tests.steady [RUNS]`: the tests that hang on seconds, many times in a row; which of them fails when.
+"""`python -m tests.steady [RUNS] [--pause-ms MS]`: tests that hang on seconds, many times in a row; which fails when.
 
 They are those of `make test-services` and `make test-drivers` that tests/conftest.py marks so. Printed is a row for a
 run of a part, and at the end how often each test has failed; what it said is in out/steady. A race shows in one run of
-many: it is mended, no test is tried twice.
+many, and sooner where processes are paused at times: it is mended, no test is tried twice.
 """
 
+import argparse
 import subprocess
 import sys
 import time
@@ -14,6 +15,7 @@ from xml.etree import ElementTree
 
 from tests.devices.turns import are_granted
 from tests.paths import ROOT
+from tests.pauses import paused_at_times
 
 RUNS = 20
 OUT = ROOT / "out" / "steady"
@@ -31,7 +33,7 @@ def failed_of(report: Path) -> tuple[int, list[str]]:
     ]
 
 
-def run(part: str, number: int) -> list[str]:
+def run(part: str, number: int, pause_s: float) -> list[str]:
     """Run a part once, and print its row; the names of the tests that failed."""
     name = f"{part}-{number:02}"
     report = OUT / f"{name}.xml"
@@ -49,7 +51,9 @@ def run(part: str, number: int) -> list[str]:
     ]
     began_s = time.monotonic()
     with (OUT / f"{name}.log").open("w", encoding="utf-8") as log:
-        status = subprocess.run(words, cwd=ROOT, stdout=log, stderr=subprocess.STDOUT, check=False).returncode
+        tests = subprocess.Popen(words, cwd=ROOT, stdout=log, stderr=subprocess.STDOUT)
+        with paused_at_times(tests.pid, pause_s, seed=number):
+            status = tests.wait()
     count, failed = failed_of(report) if report.exists() else (0, [f"no report of {name}"])
     if status and not failed:
         failed = [f"pytest ended with {status} in {name}"]
@@ -58,11 +62,11 @@ def run(part: str, number: int) -> list[str]:
     return failed
 
 
-def main(runs: int) -> int:
+def main(runs: int, pause_s: float) -> int:
     """Run every part so many times; 0 where no test has failed."""
     OUT.mkdir(parents=True, exist_ok=True)
     print(f"run {'part':<10} {'tests':>5} {'failed':>6} {'took':>8}", flush=True)
-    ended = [(run(part, number), number) for number in range(1, runs + 1) for part in PARTS]
+    ended = [(run(part, number, pause_s), number) for number in range(1, runs + 1) for part in PARTS]
     failures = Counter(name for failed, _ in ended for name in failed)
     green = runs - len({number for failed, number in ended if failed})
     print(f"{green} of {runs} runs in which no test failed")
@@ -72,4 +76,8 @@ def main(runs: int) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else RUNS))
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("runs", type=int, nargs="?", default=RUNS)
+    parser.add_argument("--pause-ms", type=float, default=0.0, help="stop one process for so long, ten times a second")
+    arguments = parser.parse_args()
+    sys.exit(main(arguments.runs, arguments.pause_ms / 1000.0))
