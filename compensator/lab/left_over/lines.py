@@ -8,7 +8,7 @@ have the line in it, and hide it: what is periodic is no noise, but lies in a ba
 import numpy as np
 from scipy.fft import next_fast_len
 
-from compensator.lab.recordings.recording import BoolArray, FloatArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 
 WIDTH = 4  # of a line, in frequencies that are looked at: none falls between two of them
 MOST_GAIN = 5.0  # of one of several groups over the noise: noise alone has so much once in 150
@@ -34,10 +34,30 @@ def over_noise(
     """
     gains = gains / np.maximum(gains.mean(axis=1, keepdims=True), TINY)
     bounded = counts @ np.minimum(gains, MOST_GAIN) / (counts.sum() * (1.0 - float(np.exp(-MOST_GAIN))))
-    apart = np.subtract.outer(at, at)
-    sides = [(way * apart > reach[0]) & (way * apart <= reach[1]) for way in (-1.0, 1.0)]
-    floor = np.max([(side @ bounded) / np.maximum(side.sum(axis=1), 1) for side in sides], axis=0)
-    return gains / np.maximum(floor, TINY), np.sum(sides, axis=(0, 2)).astype(np.float64)
+    above, below = _above(at, bounded, reach), _above(-at[::-1], bounded[::-1], reach)
+    sides = [above, (below[0][::-1], below[1][::-1])]
+    floor = np.max([total / np.maximum(count, 1) for total, count in sides], axis=0)
+    return gains / np.maximum(floor, TINY), np.sum([count for _, count in sides], axis=0).astype(np.float64)
+
+
+def _above(at: FloatArray, values: FloatArray, reach: tuple[float, float]) -> tuple[FloatArray, IntArray]:
+    """Sums of the values (m,) that lie within a reach above each of their rising places (m,), and how many those are.
+
+    Thousands of places, each beside all others, would take longer than all that is held against them.
+    """
+    first, end = (_beyond(at, one) for one in reach)
+    sums = np.add.reduceat(np.append(values, 0.0), np.stack([first, end], axis=1).ravel())[::2]
+    return np.where(end > first, sums, 0.0), end - first
+
+
+def _beyond(at: FloatArray, reach: float) -> IntArray:
+    """Of each of rising places (m,), the first that is farther above it than a reach; m where none is."""
+    found = np.searchsorted(at, at + reach, side="right")
+    # of even places one may lie just at the reach, where a sum is rounded to the other side than the difference is
+    ends = np.concatenate([[-np.inf], at, [np.inf]])
+    found -= ends[found] - at > reach
+    found += ends[found + 1] - at <= reach
+    return found
 
 
 def is_peak(values: FloatArray) -> BoolArray:
