@@ -91,7 +91,7 @@ def screen(
             continue
         p_values = _robust_p(_sums(base, directions, labels), signs)
         lowest = np.minimum(lowest, p_values)
-        gain = _gain(base, directions, inflation, noise)
+        gain = _gain_by(noise, base, directions, inflation)
         score = gain - _price(block, directions, inflation)
         evidence.append(Evidence(block, score, gain, float(p_values[0]), _contribution(base, directions)))
     p_value = float(np.mean(lowest <= lowest[0] * (1.0 + 1e-9)))
@@ -197,11 +197,12 @@ def least_p_value(stretches: int) -> float:
 def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block], noise: Noise | None = None) -> dict[str, float]:
     """The greatest noncentrality of each name's blocks on top of the bases; 0 where nothing new is left."""
     inflation = max(inflation_of(base.residual) for base in bases)
+    each = [(block.name, bases[block.base], new_directions(bases[block.base], block)) for block in blocks]
+    known = None if noise is None or noise.outweighed else _covariances(noise, [own for _, _, own in each])
     kept: dict[str, float] = {}
-    for block in blocks:
-        base = bases[block.base]
-        directions = new_directions(base, block)
-        kept[block.name] = max(kept.get(block.name, 0.0), _gain(base, directions, inflation, noise))
+    for index, (name, base, directions) in enumerate(each):
+        gain = _gain(base, directions, inflation, None if known is None else known[index])
+        kept[name] = max(kept.get(name, 0.0), gain)
     return kept
 
 
@@ -209,7 +210,7 @@ def score_of(bases: Sequence[Base], block: Block, noise: Noise | None = None) ->
     """The score of one block on top of its base; that of no gain where nothing new is left."""
     inflation = max(inflation_of(base.residual) for base in bases)
     directions = new_directions(bases[block.base], block)
-    return _gain(bases[block.base], directions, inflation, noise) - _price(block, directions, inflation)
+    return _gain_by(noise, bases[block.base], directions, inflation) - _price(block, directions, inflation)
 
 
 def most_likely(bases: Sequence[Base], blocks: Sequence[Block]) -> Block | None:
@@ -223,12 +224,28 @@ def most_likely(bases: Sequence[Base], blocks: Sequence[Block]) -> Block | None:
     return best
 
 
-def _gain(base: Base, directions: FloatArray, inflation: float, noise: Noise | None) -> float:
-    """2 ln L gained by directions (n, rank): against known noise, or by the residual's lag-one correlation."""
+def _gain_by(noise: Noise | None, base: Base, directions: FloatArray, inflation: float) -> float:
+    """As `_gain`, against a noise where it is known, and tells formulas apart."""
+    known = None if noise is None or noise.outweighed else noise.covariance(directions)
+    return _gain(base, directions, inflation, known)
+
+
+def _gain(base: Base, directions: FloatArray, inflation: float, covariance: FloatArray | None) -> float:
+    """2 ln L gained by directions (n, rank).
+
+    Against what noise puts into them (rank, rank); None: by the residual's lag-one correlation.
+    """
     share = directions.T @ base.residual
-    if noise is None or noise.outweighed or not len(share):
+    if covariance is None or not len(share):
         return _likelihood(base, share, inflation)
-    return _compressed(strength(share, noise.covariance(directions)), len(base.residual) / inflation)
+    return _compressed(strength(share, covariance), len(base.residual) / inflation)
+
+
+def _covariances(noise: Noise, each: Sequence[FloatArray]) -> list[FloatArray]:
+    """Of what noise puts into directions (n, rank) of many blocks: one pass through the trials for all of them."""
+    ends = np.cumsum([0, *(directions.shape[1] for directions in each)])
+    whole = noise.covariance(np.concatenate(each, axis=1))
+    return [whole[a:b, a:b] for a, b in pairwise(ends)]
 
 
 def _compressed(size: float, independent: float) -> float:
@@ -258,7 +275,7 @@ def new_directions(base: Base, block: Block) -> FloatArray:
     """Orthonormal basis of what the block's columns add to the base, shape (n, rank)."""
     own = np.asfortranarray(block.columns)  # column by column, as it is gone through
     columns = np.asfortranarray(own - base.basis @ (base.basis.T @ own))
-    before, after = np.linalg.norm(own, axis=0), np.linalg.norm(columns, axis=0)
+    before, after = (np.sqrt(np.einsum("nk,nk->k", one, one)) for one in (own, columns))
     return orthonormal(columns[:, after > 1e-3 * np.where(before > 0, before, np.inf)])
 
 

@@ -218,13 +218,13 @@ class Noise:
         powers, axes = np.linalg.eigh(covariance)
         root = axes * np.sqrt(np.maximum(powers, 0.0))
         generator = np.random.default_rng(0)
-        drawn = generator.standard_normal((DRAWS, len(powers))) @ root.T
+        drawn = root @ generator.standard_normal((DRAWS, len(powers))).T
         known = generator.chisquare(self.known_from, DRAWS) / self.known_from
         strongest: dict[int, FloatArray] = {}  # of each draw, by rank
         for own in blocks:
-            shares = drawn[:, own]
-            rank = shares.shape[1]
-            strengths = np.einsum("nk,nk->n", shares @ np.linalg.pinv(covariance[own, own], 1e-9, True), shares)
+            shares = drawn[own]
+            rank = len(shares)
+            strengths = np.einsum("kn,kn->n", np.linalg.pinv(covariance[own, own], 1e-9, True) @ shares, shares)
             strongest[rank] = np.maximum(strongest.get(rank, 0.0), strengths / known)
 
         def chance(own: float) -> float:
