@@ -12,6 +12,7 @@ of PI controllers based on non-convex optimization", Automatica 34).
 """
 
 from dataclasses import dataclass
+from itertools import product
 from math import degrees, inf
 
 import numpy as np
@@ -91,24 +92,21 @@ def design(loop: Loop) -> ServoDesign:
     Raises:
         CalibrationError: not even the slowest do.
     """
-    found = (
-        _checked(float(w), damping, share, loop)
-        for w in _BANDWIDTHS
-        for damping in DAMPINGS
-        for share in INTEGRAL_SHARES
+    poles = product(_BANDWIDTHS.tolist(), DAMPINGS, INTEGRAL_SHARES)
+    placed = [(_placed(w, damping, share, loop), w) for w, damping, share in poles]
+    # the first that leaves the margins is the one: what is behind it need not be looked at
+    for gains, w in sorted(placed, key=lambda one: -one[0].integral_a_rad_s):
+        found = _checked(gains, w, loop)
+        if found is not None:
+            return found
+    raise CalibrationError(
+        f"with a delay of {loop.delay_s:.3g} s and a lag of {loop.velocity_lag_s:.3g} s no servo leaves margins of "
+        f"{LEAST_PHASE_DEG:g} degrees and {LEAST_GAIN:g} at {SLOWEST_RAD_S:g} rad/s; shorten the control period"
     )
-    sound = [one for one in found if one is not None]
-    if not sound:
-        raise CalibrationError(
-            f"with a delay of {loop.delay_s:.3g} s and a lag of {loop.velocity_lag_s:.3g} s no servo leaves margins of "
-            f"{LEAST_PHASE_DEG:g} degrees and {LEAST_GAIN:g} at {SLOWEST_RAD_S:g} rad/s; shorten the control period"
-        )
-    return max(sound, key=lambda one: one.gains.integral_a_rad_s)
 
 
-def _checked(bandwidth_rad_s: float, damping: float, share: float, loop: Loop) -> ServoDesign | None:
-    """The design of these poles; None where a margin is missing."""
-    gains = _placed(bandwidth_rad_s, damping, share, loop)
+def _checked(gains: Gains, bandwidth_rad_s: float, loop: Loop) -> ServoDesign | None:
+    """The design of these gains; None where a margin is missing."""
     found = []
     for inertia in loop.inertias_a_s2_rad:
         found.append(margins(gains, inertia, loop))
