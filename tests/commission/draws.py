@@ -25,6 +25,7 @@ from bench.commission.flow import Commission
 from bench.commission.motions import Motions
 from bench.commission.questions import Question
 from bench.config.configuration import read_configuration
+from bench.control.recorder import Recorder
 from bench.errors import BenchError
 from bench.runs.runner import Runner
 from bench.store import Store
@@ -40,6 +41,7 @@ from tests.commission.wires import CanWire, SerialWire, VirtualWire, plugged_in,
 
 ALLOWED_KG, ALLOWED_S, ALLOWED_ANSWERS = 2e-3, 900.0, 12
 TRAVEL_RAD = radians(120.0)
+Recorder.BLOCK_S = 1.0  # of virtual time: a transaction for every eight rows would take a third of it all
 ANSWER_S = 15  # that a person takes to read, to do and to answer; it counts as time of the bench
 
 
