@@ -132,8 +132,8 @@ def _block(rows: Sequence[list[str]], decimal: str) -> tuple[int, int, float, in
 
 def _is_data(cells: Sequence[str], decimal: str) -> bool:
     """Whether a line holds values: numbers, for the most part, and a number or a time to begin with."""
-    values = sum(_is_value(cell, decimal) for cell in cells)
     numbers = sum(is_number(cell, decimal) or is_stamp(cell) for cell in cells)
+    values = numbers + sum(not cell.strip() for cell in cells)
     return numbers > 0 and values >= NUMERIC * len(cells) and not any("=" in cell or ":=" in cell for cell in cells[:1])
 
 
