@@ -11,6 +11,7 @@ unchanged program gives the same numbers again, and the chance is nil.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations
 from math import comb, sqrt
 from typing import Literal
@@ -99,9 +100,14 @@ def _verdict(metric: Metric, p_worse: float, p_better: float, level: float) -> V
 def permutation_p(low: FloatArray, high: FloatArray) -> float:
     """The share of ways to share the values out in which the second group is at least as far above the first."""
     pooled = np.concatenate([low, high])
-    chosen = np.array(list(combinations(range(len(pooled)), len(high))))
-    sums = pooled[chosen].sum(axis=1)
+    sums = pooled[_ways(len(pooled), len(high))].sum(axis=1)
     return float(np.mean(sums >= high.sum() - ROUNDING * np.abs(pooled).max() * len(pooled)))
+
+
+@lru_cache(maxsize=1)  # a report compares groups of one size, and to list the ways takes longer than their sums
+def _ways(count: int, chosen: int) -> NDArray[np.int64]:
+    """Every way to choose so many of a count, shape (ways, chosen)."""
+    return np.array(list(combinations(range(count), chosen)))
 
 
 def mean_interval(values: Sequence[float]) -> tuple[float, float, float]:
