@@ -37,17 +37,18 @@ def smallest_found(ratios: Sequence[float], found: Sequence[bool]) -> tuple[floa
     drawn = generator.multinomial(len(answers), np.full(len(answers), 1.0 / len(answers)), size=RESAMPLES)
     counts = np.vstack([np.ones(len(answers)), drawn])
     best = np.full((len(SIZES), len(counts)), -np.inf)
-    for guessed in GUESSED:
-        for slope in SLOPES:
-            best = np.maximum(best, _log_likelihood(np.log(ratios), answers, slope, guessed) @ counts.T)
+    for slope in SLOPES:
+        middle = np.log(SIZES) - NINE_IN_TEN / slope
+        rise = expit(slope * (np.log(ratios) - middle[:, None]))
+        for guessed in GUESSED:
+            best = np.maximum(best, _log_likelihood(rise, answers, guessed) @ counts.T)
     sizes = SIZES[np.argmax(best, axis=0)]
     low, high = np.quantile(sizes[1:], [0.025, 0.975])
     return float(sizes[0]), float(low), float(high)
 
 
-def _log_likelihood(size: FloatArray, found: BoolArray, slope: float, guessed: float) -> FloatArray:
-    """Of each item at each threshold of the grid, shape (sizes, items)."""
-    middle = np.log(SIZES) - NINE_IN_TEN / slope
-    chance = guessed + (1.0 - guessed) * expit(slope * (size - middle[:, None]))
+def _log_likelihood(rise: FloatArray, found: BoolArray, guessed: float) -> FloatArray:
+    """Of each item at each threshold of the grid, where the curve without the guessed share is at `rise`."""
+    chance = guessed + (1.0 - guessed) * rise
     likelihood: FloatArray = np.log(np.clip(np.where(found, chance, 1.0 - chance), 1e-9, None))
     return likelihood
