@@ -19,7 +19,7 @@ import numpy as np
 
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.lines import MOST_GAIN, TINY, WIDTH, chance_over_noise, is_peak, over_noise
-from compensator.lab.model.order_search import AT_ONCE, explained
+from compensator.lab.model.order_search import AT_ONCE, even_waves, explained
 from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.rows.dataset import FEWEST_ROWS, Trial
 from compensator.lab.screening.base import Base
@@ -159,9 +159,10 @@ def independent_s(counts: FloatArray, lasted_s: FloatArray) -> float:
 
 
 def _gains(base: Base, carrier: FloatArray, time_s: FloatArray, at_hz: FloatArray, trials: list[Indices]) -> FloatArray:
-    """What each trial gains by each frequency (m,), shape (trials, m)."""
-    phase = 2.0 * np.pi * np.outer(time_s, at_hz)
-    columns = carrier[:, None] * np.concatenate([np.cos(phase), np.sin(phase)], axis=1)
+    """What each trial gains by each of even frequencies (m,), shape (trials, m)."""
+    step_hz = float(at_hz[1] - at_hz[0]) if len(at_hz) > 1 else 0.0
+    turning = 2.0 * np.pi * time_s
+    columns = even_waves(turning, np.zeros(len(time_s)), carrier, float(at_hz[0]), step_hz, len(at_hz))
     return np.array([explained(columns[own], base.basis[own], base.residual[own]) for own in trials])
 
 

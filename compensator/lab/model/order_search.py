@@ -76,7 +76,9 @@ class Path:
     def columns(self, orders: FloatArray) -> FloatArray:
         """Cosines, then sines, of even orders (m,) [rad per unit of position], filtered and weighted, shape (n, 2m)."""
         step = float(orders[1] - orders[0]) if len(orders) > 1 else 0.0
-        return _waves(self.position, self.speed / self.cutoff_rad_s, self.weight, float(orders[0]), step, len(orders))
+        return even_waves(
+            self.position, self.speed / self.cutoff_rad_s, self.weight, float(orders[0]), step, len(orders)
+        )
 
     def factor(self, kind: str) -> FloatArray:
         """Of such columns of one kind, shape (n, 1); of a force, (1, 1)."""
@@ -108,12 +110,13 @@ class Path:
 
 
 @njit(cache=True)
-def _waves(
+def even_waves(
     position: FloatArray, passing: FloatArray, weight: FloatArray, first: float, step: float, count: int
 ) -> FloatArray:
     """`Path.columns` of so many orders, from the first on by even steps [rad per unit of position].
 
-    A turn by each step takes less time than a cosine of its own; `passing` is the speed over the filter's cut-off.
+    A turn by each step takes less time than a cosine of its own; `passing` is the speed over the filter's cut-off, 0 of
+    what is not filtered.
     """
     columns = np.empty((len(position), 2 * count))
     for row in range(len(position)):

@@ -303,3 +303,20 @@ def line(x: Truth) -> np.ndarray:
 def test_what_rings_after_reversals_is_what_a_formula_of_memory_leaves(law, swings):
     gathered = gather_curves(widened(fitted(recorded(law)), "moving"), "moving")
     assert (left_over(gathered).swing is not None) == swings
+
+
+@pytest.mark.parametrize(("first", "step", "reach"), [(0.25, 1.0 / 48.0, (0.25, 1.0)), (0.37, 0.0925, (0.74, 14.8))])
+def test_the_noise_around_is_of_all_within_reach_and_of_no_other(first, step, reach):
+    # reaches of whole steps: the last place lies just at the end, where rounding decides
+    at = first + step * np.arange(300)
+    at[200:] += 2.0 * reach[1]
+    gains = np.random.default_rng(5).exponential(size=(2, 300))
+    gains[:, 100:180], gains[:, 200] = 0.0, 9.0  # what is beyond the gap is no noise before it
+    over, around = lines.over_noise(at, gains, np.array([1.0, 0.4]), reach)
+    evened = gains / gains.mean(axis=1, keepdims=True)
+    summed = np.array([1.0, 0.4]) @ np.minimum(evened, MOST_GAIN) / (1.4 * (1.0 - np.exp(-MOST_GAIN)))
+    for place in (0, 7, 90, 140, 199, 240, 299):
+        sides = [(way * (at - at[place]) > reach[0]) & (way * (at - at[place]) <= reach[1]) for way in (-1.0, 1.0)]
+        assert around[place] == sum(side.sum() for side in sides)
+        floor = max(summed[side].mean() if side.any() else 0.0 for side in sides)
+        assert over[:, place] == pytest.approx(evened[:, place] / max(floor, lines.TINY))
