@@ -129,6 +129,12 @@ class Motion:
         return since_rest(self.position, self.velocity, self.time_s, self.slow)
 
     @cached_property
+    def log_speed(self) -> FloatArray:
+        """Logarithm of the speed, shape (n,): what a search raises to one power after the other."""
+        with np.errstate(divide="ignore"):  # at rest
+            return np.asarray(np.log(np.abs(self.velocity)))
+
+    @cached_property
     def step_s(self) -> float:
         """Time from sample to sample [s]; 0 of a single moment."""
         return float(self.time_s[1] - self.time_s[0]) if len(self.time_s) > 1 else 0.0

@@ -20,7 +20,9 @@ def shapes(motion: Motion) -> list[Shape]:
 def columns(motion: Motion, shape: Shape) -> FloatArray:
     """Excess of static over Coulomb friction at this speed, for shape (v_s, delta)."""
     speed, exponent = shape
-    return (motion.direction * np.exp(-((np.abs(motion.velocity) / speed) ** exponent)))[None]
+    power = np.exp(exponent * (motion.log_speed - np.log(speed)))
+    found: FloatArray = (motion.direction * np.exp(-power))[None]
+    return found
 
 
 EFFECT = Effect(
