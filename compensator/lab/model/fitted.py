@@ -1,14 +1,16 @@
 """A fitted model: its terms, what it predicts, what it leaves, and how well it knows that."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.linear import Bounds, Term
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
-from compensator.lab.rows.dataset import Dataset
+from compensator.lab.rows.dataset import Dataset, RowChoice
 
 STATIC = "stribeck"
 DRY = ("coulomb", "stribeck")  # effects whose sum is dry friction, and static friction at rest
@@ -25,6 +27,7 @@ class Fit:
         columns: of all terms, shape (N, K).
         weight: of each row in the fit, shape (N,).
         target: what the columns were fitted to, shape (N,): the effort, or that of the model's tangent where it bends.
+        judged: what `held_out` has found of it, by the rows that it was asked for; a search asks again and again.
     """
 
     dataset: Dataset
@@ -33,6 +36,7 @@ class Fit:
     columns: FloatArray
     weight: FloatArray
     target: FloatArray
+    judged: dict[RowChoice, HeldOut] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def coefficients(self) -> FloatArray:
@@ -84,7 +88,7 @@ class Fit:
         """Predicted effort of every row, shape (N,)."""
         return self.dataset.effort - self.residual
 
-    @property
+    @cached_property
     def residual(self) -> FloatArray:
         """Measured minus predicted effort of every row, shape (N,)."""
         return self.target - self.columns @ self.coefficients

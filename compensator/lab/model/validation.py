@@ -28,7 +28,14 @@ def held_out(fit: Fit, rows: RowChoice | None = None) -> HeldOut:
         fit: to be judged.
         rows: that are judged; None takes the study's.
     """
-    judged = fit.dataset.in_regimes(rows or fit.dataset.rows)
+    choice = rows or fit.dataset.rows
+    if choice not in fit.judged:
+        fit.judged[choice] = _held_out(fit, fit.dataset.in_regimes(choice))
+    return fit.judged[choice]
+
+
+def _held_out(fit: Fit, judged: BoolArray) -> HeldOut:
+    """On rows of chosen regimes, shape (N,)."""
     trials = fit.dataset.trial_index
     trained = trained_trials(fit.dataset, fit.training)
     outside = judged & ~np.isin(trials, trained)
