@@ -226,7 +226,8 @@ def most_likely(bases: Sequence[Base], blocks: Sequence[Block]) -> Block | None:
 
 def _gain_by(noise: Noise | None, base: Base, directions: FloatArray, inflation: float) -> float:
     """As `_gain`, against a noise where it is known, and tells formulas apart."""
-    known = None if noise is None or noise.outweighed else noise.covariance(directions)
+    none = noise is None or noise.outweighed or not directions.shape[1]
+    known = None if noise is None or none else noise.covariance(directions)
     return _gain(base, directions, inflation, known)
 
 
@@ -244,6 +245,8 @@ def _gain(base: Base, directions: FloatArray, inflation: float, covariance: Floa
 def _covariances(noise: Noise, each: Sequence[FloatArray]) -> list[FloatArray]:
     """Of what noise puts into directions (n, rank) of many blocks: one pass through the trials for all of them."""
     ends = np.cumsum([0, *(directions.shape[1] for directions in each)])
+    if not ends[-1]:
+        return [np.zeros((0, 0))] * len(each)
     whole = noise.covariance(np.concatenate(each, axis=1))
     return [whole[a:b, a:b] for a, b in pairwise(ends)]
 
