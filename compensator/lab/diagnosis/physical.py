@@ -1,15 +1,13 @@
 """Whether what explains something can be the effect: its size, its sign, its shape."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Parameter, shape_parameters
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import BoolArray, FloatArray
-from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
-from compensator.lab.screening.evidence import VERY_STRONG, Evidence, score_of
+from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.evidence import Evidence
 
 UNSURE = 2.0  # standard errors: a coefficient so near to a bound may lie on either side of it
 TOLD = "the rig tells of as much already"
@@ -45,8 +43,7 @@ def why_impossible(fit: Fit, name: str) -> str:
 def why_not_possible(gathered: Candidates, item: Evidence) -> str:
     """Why the freely fitted coefficients cannot be the effect's, in words; empty where they can.
 
-    They are within bounds, and as large as what they stand in the place of. What the measuring chain makes near
-    reversals is nothing physical, and what the owner tells of is not missing.
+    They are within bounds, and as large as what they stand in the place of. What the owner tells of is not missing.
     """
     if not is_within_bounds(gathered, item):
         return f"it would be {_size(gathered, item)}"
@@ -54,8 +51,6 @@ def why_not_possible(gathered: Candidates, item: Evidence) -> str:
         return f"it would be under {effect_named(item.block.name).least_of_friction:.0%} of dry friction"
     if is_told(gathered, item):
         return f"{TOLD} ({_shape(gathered, item)})"
-    if is_made_by_chain(gathered, item):
-        return "the measuring chain alone may make it"
     return ""
 
 
@@ -89,17 +84,6 @@ def is_told(gathered: Candidates, item: Evidence) -> bool:
     return effect_named(item.block.name).told(gathered.fit.dataset.facts, item.block.shape)
 
 
-def is_made_by_chain(gathered: Candidates, item: Evidence) -> bool:
-    """Whether an effect near reversals has no very strong evidence beside the chain's columns that it stands in for.
-
-    Without these, all that a sign leaves that is smoothed or late would count for the effect. In steady sliding that
-    is not asked: what stands for the chain is there what is missing, as a Stribeck curve of a low speed is.
-    """
-    if gathered.show_in != "moving" or item.block.base == WITH_CHAIN:
-        return False
-    return score_of(gathered.bases, replace(item.block, base=WITH_CHAIN), gathered.noise) < VERY_STRONG
-
-
 def is_within_bounds(gathered: Candidates, item: Evidence) -> bool:
     """Whether the freely fitted coefficients lie within the effect's bounds, as far as the rows can tell."""
     ranges = effect_named(item.block.name).ranges_in(gathered.fit.dataset.effort_definition.quantity)
@@ -130,12 +114,12 @@ def _past(gathered: Candidates, item: Evidence) -> BoolArray:
 
 
 def is_before_scan(gathered: Candidates, item: Evidence) -> bool:
-    """Whether an effect that the chain's columns could be taken for lies at the lower end of its scan in all values.
+    """Whether the shape lies at the lower end of a scan of all that the effect can be, in all values.
 
     There something shorter fits as well, and it cannot be told from what the measuring chain makes of a sign.
     """
     ends, effect = _scanned(gathered, item), effect_named(item.block.name)
-    if len(ends) == 0 or not effect.standing_in:
+    if len(ends) == 0:
         return False
     within = effect.ends_within_scan
     return bool(np.all(np.array(item.block.shape)[:within] <= (1.0 + ROUNDING) * np.min(ends, axis=0)[:within]))

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numba import njit
+from scipy.interpolate import CubicHermiteSpline
 
 from compensator.lab.recordings.recording import FloatArray, IntArray
 
@@ -60,3 +61,11 @@ def _differences(values: FloatArray, rate_hz: float, derived: FloatArray) -> Non
         total += three * (values[row + 3] - values[row - 3])
         total += four * (values[row + 4] - values[row - 4])
         derived[row] = total * rate_hz
+
+
+def later(values: FloatArray, late_s: float, rate_hz: float) -> FloatArray:
+    """Values (n,) a time later, between samples by cubic Hermite splines; the last one beyond the end."""
+    time_s = np.arange(len(values)) / rate_hz
+    spline = CubicHermiteSpline(time_s, values, rate_of_change(values, rate_hz))
+    found: FloatArray = spline(np.clip(time_s + late_s, 0.0, time_s[-1]))
+    return found

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from compensator.lab.effects.effect import Effect, Motion, Shape
 from compensator.lab.errors import NotApplicableError
-from compensator.lab.recordings.differentiation import rates_of_change
+from compensator.lab.recordings.differentiation import later, rates_of_change
 from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.low_pass import low_pass_thinned
 from compensator.lab.recordings.processing import Signals
@@ -109,6 +109,18 @@ class Dataset:
         if EFFORT not in self.cache:
             self.cache[EFFORT] = self.stack([trial.signals.effort[None] for trial in self.trials])[:, 0]
         return self.cache[EFFORT]
+
+    @cached_property
+    def effort_gained_in_step(self) -> FloatArray:
+        """The effort at the time of the motion that it makes, less that recorded then, filtered, shape (N,).
+
+        By the delay that the model has: what else the joint does is recorded as late as all that the model knows of it.
+        Held against an effort of another moment, what swings, or turns round, would be out of step.
+        """
+        signals, late_s = [trial.signals for trial in self.trials], self.trials[0].motion.late_s
+        if late_s == 0.0:
+            return np.zeros(len(self.effort))
+        return self.stack((later(s.effort, -late_s, s.rate_hz) - s.effort)[None] for s in signals)[:, 0]
 
     @cached_property
     def bent_effort(self) -> FloatArray:

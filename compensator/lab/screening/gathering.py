@@ -54,6 +54,8 @@ class _Builder:
         self._fit, self._show_in, self._rows, self._weights = fit, show_in, rows, weights
         self._nuisance = nuisance_columns(fit.dataset, show_in)
         self._model = model_columns(fit)
+        # near reversals all changes within a delay; what a chain makes of the effort shows in it as it was recorded
+        self._target = fit.target + (fit.dataset.effort_gained_in_step if show_in == "moving" else 0.0)
         self._index: dict[frozenset[str], int] = {}
         self.bases: list[Base] = []
         self._base_without(frozenset())
@@ -98,7 +100,7 @@ class _Builder:
             kept = [column for name, column in self._nuisance.items() if name not in nuisances]
             columns = np.column_stack([self._model, *kept])
             self._index[nuisances] = len(self.bases)
-            effort = self._weights * self._fit.target[self._rows]
+            effort = self._weights * self._target[self._rows]
             self.bases.append(Base.of(self.weighted(columns), effort))
         return self._index[nuisances]
 

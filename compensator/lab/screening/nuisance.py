@@ -27,7 +27,8 @@ def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[
 
     The far side of teeth and shaft is not where the motor side is that is measured: what follows from the free play
     and the stiffness that are known is not missing, be it near a reversal or where slow motion changes flanks. Near
-    reversals a delay looks like memory: there its own column stands too.
+    reversals a delay looks like memory: there its own column stands too, and the effort's second derivative, which is
+    what a low-pass takes beside the delay.
     """
     stack = dataset.stack([_columns(trial.motion, trial.signals.rate_hz) for trial in dataset.trials])
     named = dict(zip(NAMES, stack.T, strict=True))
@@ -39,6 +40,8 @@ def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[
         named |= {name: columns[:, 0] for name, columns in zip(KNOWN_PLAY, found, strict=True)}
     if show_in == "moving":
         named["delay"] = dataset.columns(measurement_delay.EFFECT, ())[:, 0]
+        rates = (rate_of_change(trial.motion.effort_rate, trial.signals.rate_hz) for trial in dataset.trials)
+        named["smoothing"] = dataset.stack(rate[None] for rate in rates)[:, 0]
     return named
 
 

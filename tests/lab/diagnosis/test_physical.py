@@ -135,14 +135,3 @@ def test_what_is_impossible_about_it_is_told_with_its_number(name, shape, share,
     fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
     gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), share * column)], fit=fit, show_in="sliding")
     assert why_not_physical(gathered, item) == why
-
-
-def test_what_the_measuring_chain_may_make_says_so(monkeypatch):
-    column = np.sin(np.arange(200.0))
-    item = Evidence(Block("backlash", column[:, None], 0, 15, (0.02,)), 50.0, 4000.0, 0.001, column)
-    dataset = SimpleNamespace(effort_definition=SimpleNamespace(quantity="torque"), facts=Facts())
-    bases = [Base(np.zeros((200, 1)), column), Base(np.zeros((200, 1)), column)]
-    fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
-    gathered: Any = SimpleNamespace(bases=bases, fit=fit, show_in="moving", noise=None)
-    monkeypatch.setattr(physical, "is_made_by_chain", lambda *_: True)
-    assert why_not_physical(gathered, item) == "the measuring chain alone may make it"

@@ -163,7 +163,7 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "torque_constant_saturation": ((), lambda m: [predicted(m) * np.abs(predicted(m))]),
     "current_gain_asymmetry": ((), lambda m: [np.abs(predicted(m))]),
     "dead_time": ((0.02,), lambda m: [np.tanh(predicted(m) / (0.02 * 1.5))]),
-    "supply_sag": ((), lambda m: [predicted(m) ** 3 / 1.5**2]),
+    "supply_sag": ((2.0,), lambda m: [predicted(m) * ((predicted(m) / 1.5 + 2.0 * m.velocity / 2.9) / 3.0) ** 2]),
     "back_emf_error": ((), lambda m: [m.velocity]),
     "winding_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * predicted(m)]),
     "warm_up": ((40.0,), lambda m: [np.exp(-(m.time_s + 30.0) / 40.0) * np.sign(m.velocity)]),
@@ -290,6 +290,7 @@ def test_what_goes_by_the_current_leaves_out_the_back_emf_of_a_voltage(name):
     held = replace(plain, predicted=plain.predicted + 0.4 * plain.velocity, back_emf=0.4)
     found, same, without = (effect.columns(one, shape) for one in (held, plain, replace(held, back_emf=0.0)))
     if name == "supply_sag":  # the duty holds the back-EMF
-        same = same * (held.predicted / plain.predicted) ** 2
+        more = 0.1 * plain.velocity * 1.5 / 2.9
+        same = same * ((held.predicted + more) / (plain.predicted + more)) ** 2
     assert found == pytest.approx(same)
     assert without != pytest.approx(same, rel=0.01)

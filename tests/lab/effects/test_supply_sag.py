@@ -15,17 +15,21 @@ from compensator.lab.rows.dataset import Processing
 from tests.lab.synthetic import FACTS, Joint, plans, recordings
 
 NOMINAL_V, SOURCE_OHM, WINDING_OHM, BACK_EMF_V_S, AMPERE_PER_N_M = 12.0, 1.2, 2.0, 0.4, 3.0
+LARGE = 1.2  # of a back-EMF [V s/rad], at speed more than what the winding needs
 
 
-def sagging(one: Recording, source_ohm: float) -> Recording:
-    """Duty x nominal supply of a stage that needs D (U - R_s D i) = R i + k_e w."""
+def sagging(one: Recording, source_ohm: float, estimated: bool = False) -> Recording:
+    """Duty x nominal supply of a stage that needs D (U - R_s D i) = R i + k_e w; or the current that it seems to be."""
     torque, time_s = one.channels["torque_n_m"], one.channels["time_s"]
     current_a = AMPERE_PER_N_M * torque
-    wanted_v = WINDING_OHM * current_a + BACK_EMF_V_S * np.gradient(one.channels["position_rad"], time_s)
+    back_emf_v = (LARGE if estimated else BACK_EMF_V_S) * np.gradient(one.channels["position_rad"], time_s)
+    wanted_v = WINDING_OHM * current_a + back_emf_v
     duty = wanted_v / NOMINAL_V
     for _ in range(50):
         duty = wanted_v / (NOMINAL_V - source_ohm * duty * current_a)
     rest = {name: values for name, values in one.channels.items() if name != "torque_n_m"}
+    if estimated:
+        return replace(one, channels={**rest, "current_estimate_a": (duty * NOMINAL_V - back_emf_v) / WINDING_OHM})
     return replace(one, channels={**rest, "duty": duty, "supply_v": np.full(len(duty), NOMINAL_V)})
 
 
@@ -43,6 +47,14 @@ def test_a_sagging_supply_is_in_the_first_class(trials):
     found = diagnosed(trials, replace(FACTS, supply_is_nominal=True))
     assert found.verdict == "missing"
     assert "supply_sag" in found.classes[0]
+
+
+def test_the_duty_behind_an_estimated_current_holds_the_back_emf(trials):
+    facts = replace(FACTS, supply_is_nominal=True)
+    made = [sagging(one, 0.3, estimated=True) for one in trials]
+    found = diagnose(fit_model(make_dataset(made, facts, Processing()), default_effects(facts)))
+    assert found.verdict == "missing"
+    assert found.classes[0][0] == "supply_sag"
 
 
 def test_where_the_supply_is_measured_it_cannot_be_missing(trials):

@@ -80,17 +80,10 @@ def near_sign(m: Motion, more: np.ndarray) -> np.ndarray:
     return np.tanh((predicted(m) + 1e-6 * more) / (0.02 * 1.5))
 
 
-def near_duty(m: Motion, more: np.ndarray) -> np.ndarray:
-    """D^2 i where the square of the duty holds a little of the speed, too."""
-    share = predicted(m) / 1.5
-    return share * (share**2 + 1e-6 * more)
-
-
 NEAR: dict[str, tuple[Callable[[Motion, np.ndarray], np.ndarray], Callable[[Motion], list[np.ndarray]]]] = {
     "load_friction": (near_load, lambda m: [m.direction, m.velocity, m.acceleration, m.direction]),
     "load_friction_quadratic": (near_square, lambda m: [m.velocity, m.acceleration]),
     "dead_time": (near_sign, lambda m: [np.ones(41), m.direction, m.velocity]),
-    "supply_sag": (near_duty, lambda m: [m.velocity * predicted(m), m.velocity**2]),
 }
 
 

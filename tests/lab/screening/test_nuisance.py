@@ -72,7 +72,7 @@ def test_known_teeth_and_shafts_are_not_missing_in_slow_motion_either():
     fit = fitted(told)
     dataset = with_own_prediction(fit.dataset, fit.terms)
     sliding, moving = (nuisance_columns(dataset, show_in) for show_in in ("sliding", "moving"))
-    assert {*moving} - {*sliding} == {"delay"}
+    assert {*moving} - {*sliding} == {"delay", "smoothing"}
     flying = sliding["known_play"][dataset.regime == Regime.SLIDING]
     assert np.abs(flying).max() > 0.0
 

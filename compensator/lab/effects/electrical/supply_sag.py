@@ -7,22 +7,16 @@ from compensator.lab.recordings.facts import BY_VOLTAGE
 from compensator.lab.recordings.recording import FloatArray
 
 
-def columns(motion: Motion, _: Shape) -> FloatArray:
-    """Effort by current times the square of the duty, as predicted: over the largest."""
-    return (motion.driven * _of_largest(motion) ** 2)[None]
+def shapes(_: Motion) -> list[Shape]:
+    """From hardly any back-EMF beyond what the effort holds to one beside which the winding's drop is little."""
+    return [(float(ratio),) for ratio in np.geomspace(0.1, 10.0, 5)]
 
 
-def discrepancy(motion: Motion, _: Shape) -> FloatArray:
-    """What else the duty holds where nobody tells the back-EMF: the other terms of D^2 i with D U = R i + k_e w."""
-    if motion.back_emf:
-        return np.empty((0, len(motion.predicted)))
-    share = _of_largest(motion)
-    return np.array([motion.velocity * share**2, motion.velocity**2 * share])
-
-
-def _of_largest(motion: Motion) -> FloatArray:
-    found: FloatArray = motion.predicted / (motion.largest_effort or 1.0)
-    return found
+def columns(motion: Motion, shape: Shape) -> FloatArray:
+    """Effort by current times the square of the duty, as predicted: over the largest of both, for shape (ratio,)."""
+    [ratio] = shape
+    drop, back_emf = motion.predicted / (motion.largest_effort or 1.0), motion.velocity / (motion.fast or 1.0)
+    return (motion.driven * ((drop + ratio * back_emf) / (1.0 + ratio)) ** 2)[None]
 
 
 EFFECT = Effect(
@@ -31,9 +25,10 @@ EFFECT = Effect(
     physics=(
         "The source has a resistance, and the stage draws the duty's share of the motor current from it: the more of "
         "both, the less voltage is there. Where the effort is computed with the nominal voltage, it is too large. "
-        "A drive that measures its supply hides nothing."
+        "The duty holds the back-EMF, which a current that is computed from it does not. A drive that measures its "
+        "supply hides nothing."
     ),
-    equation=r"s\,\hat\tau^3/\hat\tau_m^2",
+    equation=r"s\,\hat\tau\,\left(\frac{\hat\tau/\hat\tau_m + k\,\dot q/\dot q_m}{1 + k}\right)^2",
     columns=columns,
     parameters=(Parameter("share of the supply lost at the largest effort", "1", 0.0, 1.0),),
     driver="effort",
@@ -43,5 +38,7 @@ EFFECT = Effect(
     efforts=BY_VOLTAGE,
     facts=("supply_is_nominal",),
     builds_on="effort",
-    discrepancy=discrepancy,
+    shapes=shapes,
+    smooth_shape=True,
+    shape_names=("back-EMF beyond the effort's at high speed, over the largest effort",),
 )

@@ -53,7 +53,6 @@ EFFECT = Effect(
     shape_names=("free play", "share of the arm in the inertia without load"),
     shape_units=("{position}", "1"),
     confused_with=("pre_sliding", "elasticity"),
-    standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
     builds_on="load",
     rows="moving",
     told=told,

@@ -57,7 +57,6 @@ EFFECT = Effect(
     shape_names=("distance that forgets the rest",),
     shape_units=("{position}",),
     confused_with=("stribeck", "pre_sliding"),
-    standing_in=frozenset({"slow_sign", "fast_sign"}),
     rows="moving",
     breakaway=BREAKAWAY,
 )

@@ -58,7 +58,6 @@ EFFECT = Effect(
     shape_names=("speed over which friction falls", "lag"),
     shape_units=("{position}/s", "s"),
     confused_with=("inertia", "pre_sliding"),
-    standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
     rows="moving",
     holds=holds,
     ends_within_scan=2,

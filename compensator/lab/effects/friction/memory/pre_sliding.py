@@ -37,7 +37,6 @@ EFFECT = Effect(
     shape_names=("pre-sliding distance",),
     shape_units=("{position}",),
     confused_with=("backlash", "frictional_lag", "measurement_delay"),
-    standing_in=frozenset({"slow_sign", "fast_sign", "sign_rate"}),
     rows="moving",
     least_of_friction=0.5,
     ends_within_scan=1,
