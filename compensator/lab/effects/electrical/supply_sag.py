@@ -28,7 +28,7 @@ EFFECT = Effect(
         "The duty holds the back-EMF, which a current that is computed from it does not. A drive that measures its "
         "supply hides nothing."
     ),
-    equation=r"s\,\hat\tau\,\left(\frac{\hat\tau/\hat\tau_m + k\,\dot q/\dot q_m}{1 + k}\right)^2",
+    equation=r"s\,\hat\tau\,(\hat\tau/\hat\tau_m + k\,\dot q/\dot q_m)^2/(1 + k)^2",
     columns=columns,
     parameters=(Parameter("share of the supply lost at the largest effort", "1", 0.0, 1.0),),
     driver="effort",
