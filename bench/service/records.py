@@ -2,17 +2,18 @@
 
 from datetime import datetime
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, ConfigDict, Field
 
 from bench.json_types import Json
-from bench.store.records import Experiment as StoredExperiment
-from bench.store.records import Trial as StoredTrial
+
+STORED = ConfigDict(from_attributes=True, populate_by_name=True)  # made from the record of `bench.store` as it is
 
 
 class Experiment(BaseModel):
     """What was started, where it came from, and how it ended."""
 
-    experiment_id: int
+    model_config = STORED
+    experiment_id: int = Field(validation_alias="id")
     kind: str
     parameters: Json
     source: str = Field(description="simulated, real or imported")
@@ -31,7 +32,8 @@ class Experiment(BaseModel):
 class Trial(BaseModel):
     """One recording under constant conditions."""
 
-    trial_id: int
+    model_config = STORED
+    trial_id: int = Field(validation_alias="id")
     experiment_id: int
     name: str
     kind: str
@@ -43,41 +45,3 @@ class Trial(BaseModel):
     rows: int
     started_utc: datetime
     finished_utc: datetime | None
-
-
-def experiment_record(found: StoredExperiment) -> Experiment:
-    """A stored experiment as it is answered."""
-    return Experiment(
-        experiment_id=found.id,
-        kind=found.kind,
-        parameters=found.parameters,
-        source=found.source,
-        operator=found.operator,
-        note=found.note,
-        tags=list(found.tags),
-        provenance=found.provenance,
-        rig=found.rig,
-        started_utc=found.started_utc,
-        finished_utc=found.finished_utc,
-        outcome=found.outcome,
-        reason=found.reason,
-        results=found.results,
-    )
-
-
-def trial_record(trial: StoredTrial) -> Trial:
-    """A stored trial as it is answered."""
-    return Trial(
-        trial_id=trial.id,
-        experiment_id=trial.experiment_id,
-        name=trial.name,
-        kind=trial.kind,
-        conditions=dict(trial.conditions),
-        outcome=trial.outcome,
-        reason=trial.reason,
-        results=trial.results,
-        channels=list(trial.channels),
-        rows=trial.rows,
-        started_utc=trial.started_utc,
-        finished_utc=trial.finished_utc,
-    )

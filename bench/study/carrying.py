@@ -1,7 +1,6 @@
 """Whether trials can carry a model, before a study is made of them: how much motion they hold for each parameter."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,6 +8,7 @@ from bench.store import Store
 from bench.store.records import Condition, Trial
 from bench.study.create import definition_of
 from bench.study.material import material_of
+from bench.study.models.coverage import Checked
 from compensator.lab.effects.catalogue import effect_named
 
 ROWS_PER_PARAMETER = 20
@@ -17,32 +17,9 @@ most of the time and have 5 to 15, with held-out errors without meaning; identif
 FEWEST_VALUES = 3
 
 
-@dataclass(frozen=True, slots=True)
-class Carrying:
-    """What trials hold for a model.
-
-    Attributes:
-        carries: whether they hold enough.
-        sentence: how much that is, and what to record where it is too little.
-        rows: in which the joint slides, of the trials that are fitted.
-        parameters: of the base model.
-        still: names of trials in which the joint slides in no row.
-        hold_out: criterion that would judge the model well; "" where the trials offer none.
-        advice: why that one.
-    """
-
-    carries: bool
-    sentence: str
-    rows: int
-    parameters: int
-    still: tuple[str, ...]
-    hold_out: str
-    advice: str
-
-
 def check_trials(
     store: Store, experiment_ids: Sequence[int], hold_out: Sequence[str] = (), where: Sequence[str] = ()
-) -> Carrying:
+) -> Checked:
     """What `create_study` would have to fit with. Nothing is kept.
 
     Raises:
@@ -54,10 +31,18 @@ def check_trials(
     parameters = sum(len(effect_named(name).parameters) for name in material.definition.base)
     moving = {material.trials[index].name for index in np.unique(material.dataset.trial_index[counted])}
     training = [t for t, held in zip(material.trials, material.definition.held_out, strict=True) if not held]
-    still = tuple(dict.fromkeys(trial.name for trial in training if trial.name not in moving))
+    still = list(dict.fromkeys(trial.name for trial in training if trial.name not in moving))
     carries = rows >= ROWS_PER_PARAMETER * parameters
     criterion, advice = _advice(material.trials)
-    return Carrying(carries, _sentence(rows, parameters, still, carries), rows, parameters, still, criterion, advice)
+    return Checked(
+        carries=carries,
+        sentence=_sentence(rows, parameters, still, carries),
+        rows=rows,
+        parameters=parameters,
+        still=still,
+        hold_out=criterion,
+        advice=advice,
+    )
 
 
 def _sentence(rows: int, parameters: int, still: Sequence[str], carries: bool) -> str:

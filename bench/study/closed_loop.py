@@ -57,8 +57,8 @@ def simulate(store: Store, study_id: int, model_id: int | None = None, refined: 
         effects=model.effects,
         effort=material.effort,
         position_unit=unit,
-        training=_error(found.training),
-        held_out=None if found.held_out is None else _error(found.held_out),
+        training=LoopError.model_validate(found.training),
+        held_out=None if found.held_out is None else LoopError.model_validate(found.held_out),
         trials=[_trial(material, fit, index, one) for index, one in enumerate(found.trials)],
         refined=None if refinement is None else _refined(fit, refinement, unit),
         notes=list(_notes(found)),
@@ -114,21 +114,10 @@ def _law(experiment: Experiment, fit: Fit) -> ControlLaw | None:
     )
 
 
-def _error(error: lab.LoopError) -> LoopError:
-    return LoopError(
-        samples=error.samples,
-        position=error.position,
-        position_relative=error.position_relative,
-        velocity_relative=error.velocity_relative,
-        effort=error.effort,
-        effort_relative=error.effort_relative,
-    )
-
-
 def _trial(material: Material, fit: Fit, index: int, one: lab.TrialInLoop) -> TrialInLoop:
     trial = material.trials[index]
     return TrialInLoop(
-        **dict(_error(one.error)),
+        **dict(LoopError.model_validate(one.error)),
         trial_id=trial.id,
         name=trial.name,
         role="held_out" if one.held_out else "training",
@@ -156,8 +145,8 @@ def _refined(fit: Fit, refinement: Refinement, unit: str) -> Refined:
     effort = fit.dataset.effort[rows]
     held_out = refinement.after.held_out
     return Refined(
-        training=_error(refinement.after.training),
-        held_out=None if held_out is None else _error(held_out),
+        training=LoopError.model_validate(refinement.after.training),
+        held_out=None if held_out is None else LoopError.model_validate(held_out),
         passes=refinement.passes,
         gained=after is not None,
         inverse_before=relative_error(fit.residual[rows], effort),

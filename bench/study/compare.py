@@ -27,7 +27,6 @@ from compensator.lab.comparison import comparison
 from compensator.lab.comparison.null_space import left_open
 from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.diagnosis.run_to_run import by_run_in_words, differences_by_run
-from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.intervals import ParameterEstimate, estimates
 from compensator.lab.rows.drivers import DRIVERS
 
@@ -58,30 +57,18 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> Compari
         parameters=fitted_parameters(parameters),
         effort=material.effort,
         error=Errors(
-            training=_error(found.training),
-            held_out=_held_out(found.held_out),
-            floor=_error(found.floor) if found.floor else None,
+            training=Error.model_validate(found.training),
+            held_out=Error.model_validate(found.held_out),
+            floor=Error.model_validate(found.floor) if found.floor else None,
         ),
         trials=_trials(material, found),
-        regimes=[_regime(one) for one in found.regimes],
+        regimes=[RegimeError.model_validate(one) for one in found.regimes],
         at_rest=_at_rest(found),
         breakaway=_breakaway(found),
         series=series_of(material, fit),
         residual_against=_against(material, found),
         notes=[*_notes(material, found), *(f"{one}." for one in left_open(fit, parameters))],
     )
-
-
-def _error(error: comparison.ErrorOf) -> Error:
-    return Error(rms=error.rms, relative=error.relative)
-
-
-def _regime(error: comparison.ErrorOf) -> RegimeError:
-    return RegimeError(name=error.name, rows=error.rows, rms=error.rms, relative=error.relative)
-
-
-def _held_out(error: HeldOut) -> Error:
-    return Error(rms=error.rms, relative=error.relative, kind=error.kind)
 
 
 def _at_rest(found: comparison.Comparison) -> AtRest | None:
@@ -116,8 +103,8 @@ def _breakaway(found: comparison.Comparison) -> BreakawayError | None:
     one = found.breakaway
     return BreakawayError(
         starts=one.starts,
-        training=Error(rms=one.rms, relative=one.relative),
-        held_out=_held_out(one.held_out),
+        training=Error.model_validate(one),
+        held_out=Error.model_validate(one.held_out),
         parameters=fitted_parameters(breakaway_estimates(one.fit)),
     )
 

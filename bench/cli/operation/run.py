@@ -141,9 +141,9 @@ def _as_it_ended(found: "Experiment", status: "RunnerStatus") -> "Experiment":
 
 def _report(session: BenchSession, found: "Experiment", as_json: bool) -> None:
     if as_json:
-        from bench.service.records import experiment_record
+        from bench.service.records import Experiment
 
-        print_json(experiment_record(found).model_dump(mode="json"))
+        print_json(Experiment.model_validate(found).model_dump(mode="json"))
         return
     reason = f": {session.in_full(found.reason)}" if found.reason else ""
     say(f"experiment {found.id}: {found.outcome}{reason}")

@@ -20,9 +20,9 @@ def experiments(
     with session_of(context).open_store() as store:
         found = store.experiments(kind=kind, outcome=outcome, tag=tag, limit=limit)
     if as_json:
-        from bench.service.records import experiment_record
+        from bench.service.records import Experiment
 
-        print_json([experiment_record(one).model_dump(mode="json") for one in found])
+        print_json([Experiment.model_validate(one).model_dump(mode="json") for one in found])
         return
     rows = [
         (one.id, one.kind, one.source, one.started_utc, one.outcome, one.reason, one.note or one.parameters.get("name"),

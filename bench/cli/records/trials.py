@@ -23,9 +23,9 @@ def trials(
             store.experiment(experiment)  # says so where there is none
         found = store.trials(experiment, kind, outcome, limit=limit)
     if as_json:
-        from bench.service.records import trial_record  # here: its models take longer to make than a list to print
+        from bench.service.records import Trial  # here: its models take longer to make than a list to print
 
-        print_json([trial_record(one) for one in found])
+        print_json([Trial.model_validate(one) for one in found])
         return
     rows = [
         (one.id, one.experiment_id, one.name, one.kind, conditions(one.conditions), one.rows, one.outcome, one.reason)
@@ -58,9 +58,9 @@ def trial(
             return
         events = store.events(trial_id)
     if as_json:
-        from bench.service.records import trial_record
+        from bench.service.records import Trial
 
-        print_json({**dict(trial_record(found)), "events": [event._asdict() for event in events]})
+        print_json({**dict(Trial.model_validate(found)), "events": [event._asdict() for event in events]})
         return
     facts = {"experiment": found.experiment_id, "kind": found.kind, "outcome": found.outcome, "reason": found.reason}
     facts |= {"rows": found.rows, "channels": ", ".join(found.channels), **found.conditions}

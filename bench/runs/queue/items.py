@@ -1,7 +1,7 @@
 """Items of the queue: checked before they are taken in, as a start would be; and the order with the fewest loads."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from itertools import groupby
 
 from bench.config.configuration import BenchConfiguration
@@ -45,12 +45,7 @@ def checked_item(order: Order, configuration: BenchConfiguration) -> NewItem:
     kind.refuse(parameters, configuration)
     loads = [(plan.load_kg, plan.balanced) for plan in kind.plan(parameters, configuration)]
     return NewItem(
-        kind=order.kind,
-        parameters=order.parameters,
-        operator=order.operator,
-        note=order.note,
-        tags=checked(order.tags),
-        pace=order.pace,
+        **asdict(replace(order, tags=checked(order.tags))),
         duration_s=kind.duration_s(parameters, configuration),
         loads=[list(load) for load, _ in groupby(loads)],
     )

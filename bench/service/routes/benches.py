@@ -16,7 +16,7 @@ from bench.service.http.repeated_start import Key, once
 from bench.service.routes.queue_models import Added, NewQueueItem, Tags
 from bench.service.services import LabLinkOf, StoreOf
 from bench.store.tables.benches import SeenBench
-from bench.store.tables.lab_queue import LabItem, NewLabItem
+from bench.store.tables.lab_queue import NewLabItem
 
 router = api_router(tags=["bench"], dependencies=[Depends(allow_read)])
 ItemId = Annotated[int, Path(ge=1, le=2**31 - 1, description="number of the item")]
@@ -55,7 +55,8 @@ SEEN = {
 class LabQueueItem(BaseModel):
     """An experiment for whichever bench fits."""
 
-    item_id: int
+    model_config = ConfigDict(from_attributes=True)
+    item_id: int = Field(validation_alias="id")
     kind: str
     parameters: Json
     operator: str
@@ -116,7 +117,7 @@ def benches(link: LabLinkOf) -> Laboratory:
         problem=found.problem,
         waiting=found.waiting,
         benches=[_seen(one) for one in found.benches],
-        queue=[_queued(one) for one in found.queue],
+        queue=[LabQueueItem.model_validate(one) for one in found.queue],
     )
 
 
@@ -152,26 +153,6 @@ def remove(link: LabLinkOf, request: Request, item_id: ItemId) -> None:
     """409 where a bench has it; one whose bench was lost while it ran is given up."""
     link.laboratory().lab_queue.remove(item_id)
     note(request, f"removed item {item_id} of the laboratory's queue")
-
-
-def _queued(found: LabItem) -> LabQueueItem:
-    return LabQueueItem(
-        item_id=found.id,
-        kind=found.kind,
-        parameters=found.parameters,
-        operator=found.operator,
-        note=found.note,
-        tags=found.tags,
-        asked_by=found.asked_by,
-        for_bench=found.for_bench,
-        for_rig=found.for_rig,
-        for_tags=found.for_tags,
-        state=found.state,
-        bench=found.bench,
-        silent_s=found.silent_s,
-        declined=found.declined,
-        created_utc=found.created_utc,
-    )
 
 
 def _seen(found: SeenBench) -> BenchSeen:

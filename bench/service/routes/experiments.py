@@ -24,7 +24,7 @@ from bench.service.http.downloads import PARQUET, PARQUET_ANSWER, attachment
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.http.repeated_start import Key, once
-from bench.service.records import Experiment, experiment_record
+from bench.service.records import Experiment
 from bench.service.routes.leases import LeaseOf
 from bench.service.routes.queue_models import NewExperiment, Note, Tags
 from bench.service.routes.refused_fields import told_at_its_fields
@@ -148,13 +148,13 @@ def experiments(
     """Newest first, failed starts included."""
     found = store.experiments(kind or None, outcome or None, tag=tag or None, limit=limit + 1, offset=offset)
     items, page = cut(found, limit, offset)
-    return Experiments(items=[experiment_record(one) for one in items], **page)
+    return Experiments(items=[Experiment.model_validate(one) for one in items], **page)
 
 
 @router.get("/experiments/{experiment_id}", summary="One experiment", responses=problems(404) | conditional.ANSWER)
 def experiment(store: StoreOf, request: Request, response: Response, experiment_id: ExperimentId) -> Experiment:
     """Parameters, provenance, outcome and why, results. With an `ETag`, which changes when it does."""
-    found = experiment_record(store.experiment(experiment_id))
+    found = Experiment.model_validate(store.experiment(experiment_id))
     response.headers.update(conditional.unless_known(request, found.model_dump()))
     return found
 
@@ -169,7 +169,7 @@ def annotate(store: StoreOf, request: Request, experiment_id: ExperimentId, body
     """Also of one that has ended; what was measured stays as it is."""
     store.annotate(experiment_id, body.note, body.tags)
     note(request, f"changed tags or note of experiment {experiment_id}")
-    return experiment_record(store.experiment(experiment_id))
+    return Experiment.model_validate(store.experiment(experiment_id))
 
 
 @router.get(

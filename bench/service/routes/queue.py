@@ -22,7 +22,6 @@ from bench.service.routes.queue_models import (
     Plan,
     Queue,
     StartedCampaign,
-    item_of,
     planned,
     queue_of,
 )
@@ -68,7 +67,7 @@ def add(
 @router.get("/queue/{item_id}", summary="One item", responses=problems(404))
 def item(conductor: ConductorOf, item_id: ItemId) -> Item:
     """Also one that has come out of the queue."""
-    return item_of(conductor.table.item(item_id))
+    return Item.model_validate(conductor.table.item(item_id))
 
 
 @router.patch(
@@ -86,7 +85,7 @@ def change(conductor: ConductorOf, request: Request, item_id: ItemId, body: Chan
     if position is not None:
         conductor.table.move(item_id, position)
     note(request, f"changed item {item_id} of the queue")
-    return item_of(conductor.table.item(item_id))
+    return Item.model_validate(conductor.table.item(item_id))
 
 
 @router.delete(

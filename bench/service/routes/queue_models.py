@@ -85,7 +85,8 @@ class ChangedItem(BaseModel):
 class Item(BaseModel):
     """An experiment in the queue, or one that came out of it."""
 
-    item_id: int
+    model_config = ConfigDict(from_attributes=True)
+    item_id: int = Field(validation_alias="id")
     campaign_id: int | None
     kind: str
     parameters: Json
@@ -151,36 +152,17 @@ class StartedCampaign(Plan):
     item_ids: list[int]
 
 
-def item_of(found: QueueItem) -> Item:
-    """An item as it is answered."""
-    return Item(
-        item_id=found.id,
-        campaign_id=found.campaign_id,
-        kind=found.kind,
-        parameters=found.parameters,
-        operator=found.operator,
-        note=found.note,
-        tags=list(found.tags),
-        duration_s=found.duration_s,
-        state=found.state,
-        reason=found.reason,
-        experiment_id=found.experiment_id,
-        created_utc=found.created_utc,
-        finished_utc=found.finished_utc,
-    )
-
-
 def queue_of(found: QueueState, ended: list[QueueItem]) -> Queue:
     """The queue as it is answered."""
     return Queue(
         state=found.state,
         reason=found.reason,
-        running=None if found.running is None else item_of(found.running),
-        waiting=[item_of(item) for item in found.waiting],
+        running=None if found.running is None else Item.model_validate(found.running),
+        waiting=[Item.model_validate(item) for item in found.waiting],
         duration_s=found.duration_s,
         left_s=found.left_s,
         load_changes=found.load_changes,
-        ended=[item_of(item) for item in ended],
+        ended=[Item.model_validate(item) for item in ended],
     )
 
 

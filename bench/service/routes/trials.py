@@ -15,7 +15,7 @@ from bench.service.http.api_router import api_router
 from bench.service.http.downloads import PARQUET, PARQUET_ANSWER, attachment, samples_json
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
-from bench.service.records import Trial, trial_record
+from bench.service.records import Trial
 from bench.service.services import StoreOf
 from bench.store.records import Trial as StoredTrial
 from bench.store.tables.days import begin_and_end
@@ -76,7 +76,7 @@ def trials(
     """In the order in which they were made. Without filters: all trials."""
     found = store.trials(experiment_id, kind or None, outcome or None, limit=limit + 1, offset=offset)
     items, page = cut(found, limit, offset)
-    return Trials(items=[trial_record(trial) for trial in items], **page)
+    return Trials(items=[Trial.model_validate(trial) for trial in items], **page)
 
 
 class FoundTrials(Page):
@@ -140,7 +140,7 @@ def search(
     )
     found, total = store.search_trials(wanted, limit, offset)
     more = offset + limit if offset + limit < total else None
-    items = [trial_record(trial) for trial in found]
+    items = [Trial.model_validate(trial) for trial in found]
     return FoundTrials(items=items, total=total, limit=limit, offset=offset, next_offset=more)
 
 
@@ -148,7 +148,7 @@ def search(
 def trial(store: StoreOf, request: Request, response: Response, trial_id: TrialId) -> TrialWithEvents:
     """Conditions, outcome and why, results, channels, events. With an `ETag`, which changes when it does."""
     events = [Event(time_s=one.time_s, name=one.name, detail=one.detail) for one in store.events(trial_id)]
-    found = TrialWithEvents(**dict(trial_record(store.trial(trial_id))), events=events)
+    found = TrialWithEvents(**dict(Trial.model_validate(store.trial(trial_id))), events=events)
     response.headers.update(conditional.unless_known(request, found.model_dump()))
     return found
 

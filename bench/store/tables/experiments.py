@@ -1,7 +1,7 @@
 """Rows of the table of experiments. Each function works inside the caller's transaction."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import fields
+from dataclasses import asdict, fields
 from datetime import UTC, datetime
 from typing import Any
 
@@ -35,17 +35,8 @@ def add(connection: Connection, owner: str | None, new: NewExperiment, outcome: 
     """
     if new.source not in SOURCES:
         raise StoreValueError(f"source of an experiment is '{new.source}'; wanted {', '.join(SOURCES)}")
-    row = {
-        "kind": new.kind,
-        "parameters": new.parameters,
-        "source": new.source,
-        "provenance": new.provenance,
-        "rig": new.rig,
-        "operator": new.operator,
-        "note": new.note,
-    }
     begun: dict[str, object] = {"owner": owner, "started_utc": now(), "outcome": outcome, "reason": "", "results": {}}
-    return insert_row(connection, EXPERIMENT, {**row, **begun, **facts_of(new.provenance)})
+    return insert_row(connection, EXPERIMENT, {**asdict(new), **begun, **facts_of(new.provenance)})
 
 
 def finish(connection: Connection, experiment_id: int, outcome: str, reason: str, results: Values) -> None:

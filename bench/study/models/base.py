@@ -18,7 +18,7 @@ Role = Literal["training", "held_out"]
 class StudyModel(BaseModel):
     """An answer of a study, or a part of one. It shows itself by its sentence, or as a table in a notebook."""
 
-    model_config = ConfigDict(frozen=True)
+    model_config = ConfigDict(frozen=True, from_attributes=True)
 
     def __repr__(self) -> str:
         values = dict(self)

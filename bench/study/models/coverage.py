@@ -43,3 +43,15 @@ class Coverage(StudyModel):
     effects: list[JudgedEffect]
     advice: list[Advice] = Field(description="the trial that opens most effects first")
     sentence: str
+
+
+class Checked(StudyModel):
+    """What trials hold for a model."""
+
+    carries: bool = Field(description="whether they hold enough motion to fit the base model")
+    sentence: str
+    rows: int = Field(description="in which the joint slides, of the trials that are fitted")
+    parameters: int = Field(description="of the base model")
+    still: list[str] = Field(description="trials in which the joint does not slide")
+    hold_out: str = Field(description="criterion that would judge the model well; empty: there is none")
+    advice: str = Field(description="why that one")

@@ -8,6 +8,7 @@ from bench.service.compute import in_lab
 from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.store import Store
+from bench.study.models.coverage import Checked
 
 router = api_router("/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 
@@ -19,18 +20,6 @@ class ToCheck(BaseModel):
     experiment_ids: list[int] = Field(min_length=1, max_length=1000, description="experiments whose trials are used")
     hold_out: list[str] = Field(default=[], max_length=1000, description="as of a new study")
     where: list[str] = Field(default=[], max_length=1000, description="as of a new study")
-
-
-class Checked(BaseModel):
-    """What trials hold for a model."""
-
-    carries: bool = Field(description="whether they hold enough motion to fit the base model")
-    sentence: str
-    rows: int = Field(description="in which the joint slides, of the trials that are fitted")
-    parameters: int = Field(description="of the base model")
-    still: list[str] = Field(description="trials in which the joint does not slide")
-    hold_out: str = Field(description="criterion that would judge the model well; empty: there is none")
-    advice: str = Field(description="why that one")
 
 
 @router.post(
@@ -47,13 +36,4 @@ async def check(request: Request, body: ToCheck) -> Checked:
 def _checked(store: Store, body: ToCheck) -> Checked:
     from bench.study.carrying import check_trials  # the lab is imported when it is first needed
 
-    found = check_trials(store, body.experiment_ids, body.hold_out, body.where)
-    return Checked(
-        carries=found.carries,
-        sentence=found.sentence,
-        rows=found.rows,
-        parameters=found.parameters,
-        still=list(found.still),
-        hold_out=found.hold_out,
-        advice=found.advice,
-    )
+    return check_trials(store, body.experiment_ids, body.hold_out, body.where)
