@@ -62,10 +62,6 @@ class FrictionSettings(Section):
     curves: tuple[FrictionCurve, ...] = Field(min_length=2, description="One for each load")
     study: StudiedModel | None = Field(default=None, description="What a study found; in motion it counts, not curves")
 
-    def over_load(self, margin: float = MARGIN) -> FrictionLookup:
-        """Looked up by the load [kg]. Raises `CalibrationError` where the loads are not different."""
-        return FrictionLookup.over_load({one.load_kg: one.curve() for one in self.curves}, margin)
-
     def over_friction(self, margin: float = MARGIN) -> FrictionLookup:
         """Looked up by F_load [A], as eq. (10) gives it. Raises `CalibrationError` where they are not different."""
         return FrictionLookup.over_friction({one.f_load_a: one.curve() for one in self.curves}, margin)

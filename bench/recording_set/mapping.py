@@ -38,7 +38,6 @@ conditions = { repeat = 1 }
 """
 
 import math
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -226,12 +225,6 @@ class Mapping(Section):
     def ignores(self, name: str) -> bool:
         """Whether a column that is not mapped is not wanted."""
         return self.ignore == "rest" or name in self.ignore
-
-    def named(self) -> Iterable[str]:
-        """Every column that the mapping names."""
-        yield from (name for column in self.columns.values() for name in column.sources)
-        if self.ignore != "rest":
-            yield from self.ignore
 
     def trials_column(self, name: str) -> Renamed | None:
         """Where a column of trials.csv comes from, if it has another name there."""

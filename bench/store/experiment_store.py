@@ -3,11 +3,15 @@
 from collections.abc import Iterable
 from contextlib import suppress
 
+from sqlalchemy import select, update
+
 from bench.json_types import Values
 from bench.store.database import Database
 from bench.store.errors import StoreError
-from bench.store.records import Experiment, NewExperiment
-from bench.store.tables import experiments
+from bench.store.records import HIDDEN, Experiment, NewExperiment
+from bench.store.schema import EXPERIMENT
+from bench.store.tables import chain, experiments
+from bench.store.tables import tags as tags_of
 from bench.store.upkeep.custody import UNWRITTEN, Custody
 from bench.store.upkeep.importing import Import
 from compensator.lab.recordings.recording import Recording
@@ -70,9 +74,16 @@ class ExperimentStore:
         offset: int = 0,
     ) -> list[Experiment]:
         """Experiments, newest first; all of them without a limit."""
+        query = select(*experiments.COLUMNS).where(EXPERIMENT.c.outcome.not_in(HIDDEN))
+        for name, value in {"kind": kind, "outcome": outcome, "source": source}.items():
+            if value is not None:
+                query = query.where(EXPERIMENT.c[name] == value)
+        if tag is not None:
+            query = query.where(tags_of.with_tag(tag))
         with self._database.reading() as connection:
-            found = experiments.find(connection, kind, outcome, source, tag, limit, offset)
-        return list(map(self.custody.as_ended, found))
+            rows = connection.execute(query.order_by(EXPERIMENT.c.id.desc()).limit(limit).offset(offset)).all()
+            known = tags_of.of_experiments(connection, [row.id for row in rows])
+        return [self.custody.as_ended(Experiment(**row._asdict(), tags=known.get(row.id, ()))) for row in rows]
 
     def annotate(self, experiment_id: int, note: str | None = None, tags: Iterable[str] | None = None) -> None:
         """Change the note and the tags of an experiment, also of one that has ended; None leaves as it is.
@@ -82,7 +93,13 @@ class ExperimentStore:
             StoreValueError: a tag that cannot be kept.
         """
         with self._database.writing() as connection:
-            experiments.annotate(connection, experiment_id, note, tags)
+            outcome = experiments.get(connection, experiment_id).outcome
+            if note is not None:
+                connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(note=note))
+            if tags is not None:
+                tags_of.write(connection, experiment_id, tags)
+            if outcome != "running":
+                chain.seal(connection, "experiment", [experiment_id])
 
     def add_imported(
         self,

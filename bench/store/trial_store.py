@@ -3,11 +3,14 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from sqlalchemy import select
 
 from bench.config.channels import known_to_lab
 from bench.store.database import Database
 from bench.store.errors import StoreValueError
-from bench.store.records import Condition, Event, Trial
+from bench.store.records import HIDDEN, Condition, Event, Trial
+from bench.store.schema import EXPERIMENT, TRIAL
+from bench.store.tables import conditions as condition_rows
 from bench.store.tables import days, samples, trial_search, trials
 from bench.store.tables.conditions import Wanted
 from bench.store.tables.plotted.reduction import MIN_POINTS
@@ -81,10 +84,22 @@ class TrialStore:
 
         `conditions` maps a condition to the wanted value, or to the (lowest, highest) wanted number.
         """
+        filters = condition_rows.match_all(conditions or {})
+        for column, value in ((TRIAL.c.outcome, outcome), (TRIAL.c.experiment_id, experiment_id), (TRIAL.c.kind, kind)):
+            if value is not None:
+                filters.append(column == value)
+        if source is not None:
+            of_source = select(EXPERIMENT.c.id).where(EXPERIMENT.c.source == source)
+            filters.append(TRIAL.c.experiment_id.in_(of_source))
         with self._database.reading() as connection:
-            wanted = conditions or {}
-            found = trials.find(connection, experiment_id, kind, outcome, source, wanted, limit, offset)
-        return list(map(self.custody.as_ended, found))
+            hidden = connection.execute(select(EXPERIMENT.c.id).where(EXPERIMENT.c.outcome.in_(HIDDEN))).scalars().all()
+            if hidden:
+                filters.append(TRIAL.c.experiment_id.not_in(hidden))
+            # the page is found in indexes alone, then its rows are read: a late page costs no more than an early one
+            page = select(TRIAL.c.id).where(*filters).order_by(TRIAL.c.id).limit(limit).offset(offset).subquery()
+            rows = connection.execute(select(TRIAL).join(page, page.c.id == TRIAL.c.id).order_by(TRIAL.c.id)).all()
+            found = condition_rows.of_trials(connection, [row.id for row in rows])
+        return [self.custody.as_ended(trials.record(row, found)) for row in rows]
 
     def search_trials(self, wanted: TrialQuery, limit: int, offset: int = 0) -> tuple[list[Trial], int]:
         """One page of the trials that are looked for, sorted, and how many there are in all.

@@ -54,13 +54,3 @@ class KineticFriction:
         magnitude = np.abs(speed)
         bump = (self.static_a - self.coulomb_a) * np.exp(-((magnitude / self.stribeck_speed_rad_s) ** self.shape))
         return np.sign(speed) * (self.coulomb_a + bump + self.viscous_a_s_rad * magnitude)
-
-    def friction_a(self, speed_rad_s: FloatArray | float, applied_a: FloatArray | float) -> FloatArray:
-        """Eq. (1): friction current [A] at any speed.
-
-        Args:
-            speed_rad_s: speed, any shape.
-            applied_a: Fe, the current that friction opposes at speed 0; broadcasts with the speed.
-        """
-        stuck = np.clip(applied_a, -self.static_a, self.static_a)
-        return np.where(np.asarray(speed_rad_s) != 0.0, self.sliding_a(speed_rad_s), stuck)

@@ -15,6 +15,8 @@ class Closable(Protocol):
 
 
 BusT = TypeVar("BusT", bound=Closable)
+MadeT = TypeVar("MadeT")
+Make = Callable[[BusT, Callable[[], None]], MadeT]
 
 
 class OpenBuses(Generic[BusT]):
@@ -24,15 +26,23 @@ class OpenBuses(Generic[BusT]):
         self._lock = Lock()
         self._open: dict[Any, tuple[BusT, int]] = {}
 
-    def enter(self, key: object, connect: Callable[[], BusT]) -> BusT:
-        """The bus, opened where nobody has it open. Raises what `connect` raises."""
+    def lend(self, key: object, connect: Callable[[], BusT], make: Make[BusT, MadeT]) -> MadeT:
+        """What is made of the bus, opened where nobody has it open, and of what gives it back, which an error does."""
+        bus = self._enter(key, connect)
+        try:
+            return make(bus, lambda: self._leave(key))
+        except BaseException:
+            self._leave(key)
+            raise
+
+    def _enter(self, key: object, connect: Callable[[], BusT]) -> BusT:
         with self._lock:
             bus, users = self._open.get(key, (None, 0))
             made = connect() if bus is None else bus
             self._open[key] = made, users + 1
             return made
 
-    def leave(self, key: object) -> None:
+    def _leave(self, key: object) -> None:
         """One user less; the bus is closed with the last."""
         with self._lock:
             bus, users = self._open.pop(key)

@@ -194,10 +194,4 @@ def on_bus(settings: BusSettings, make: Callable[[CanPort, Callable[[], None]], 
     Raises:
         DriveError: the bus does not open, or the actuator cannot be opened; the port is given back then.
     """
-    key = settings.interface, str(settings)
-    port = _PORTS.enter(key, lambda: CanPort(settings))
-    try:
-        return make(port, lambda: _PORTS.leave(key))
-    except BaseException:
-        _PORTS.leave(key)
-        raise
+    return _PORTS.lend((settings.interface, str(settings)), lambda: CanPort(settings), make)

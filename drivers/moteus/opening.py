@@ -35,16 +35,10 @@ def on_line(settings: MoteusSettings, make: Callable[[Line, Callable[[], None]],
     Raises:
         DriveError: the line does not open, or the controller cannot be opened; the line is given back then.
     """
-    key = settings.place
 
     def opened() -> Line:
         if settings.bus is not None:
             return MoteusCanLine(settings.bus, settings.answer_timeout_s)
         return MoteusLine(settings.port, settings.over_uart, settings.answer_timeout_s)
 
-    line = _LINES.enter(key, opened)
-    try:
-        return make(line, lambda: _LINES.leave(key))
-    except BaseException:
-        _LINES.leave(key)
-        raise
+    return _LINES.lend(settings.place, opened, make)

@@ -31,13 +31,7 @@ def on_line(
     Raises:
         DriveError: the port is not there, or the servo cannot be opened; the bus is given back then.
     """
-    key = port, baud_rate
-    bus = _BUSES.enter(key, lambda: ServoBus(port, baud_rate, timeout_s, frames))
-    try:
-        return make(bus, lambda: _BUSES.leave(key))
-    except BaseException:
-        _BUSES.leave(key)
-        raise
+    return _BUSES.lend((port, baud_rate), lambda: ServoBus(port, baud_rate, timeout_s, frames), make)
 
 
 def check_counts(device: str, name: str, counts_per_turn: int, joint: JointScale) -> None:

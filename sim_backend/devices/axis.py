@@ -19,6 +19,7 @@ from sim_backend.plant.plant import COARSEST_STEP_S, Plant
 TICK_S = 1e-3
 _STEPS = round(TICK_S / COARSEST_STEP_S)
 _OVERLOAD_HOLDS_S = 1.0
+_ROOM_C = 25.0
 # called from here as Python: compiling it for one call in a while costs a second at the start
 _drifted = getattr(drifted, "py_func", drifted)
 _ELECTRICAL = ("rotor_rad_s", "current_a", "winding_c", "housing_c")
@@ -90,6 +91,16 @@ class Axis:
     def stage_name(self) -> str:
         """The state of the power stage."""
         return _STAGE_NAMES[self.applied.stage]
+
+    @property
+    def current_a(self) -> float:
+        """What the device measures of the motor's current [A]; 0 without a sensor."""
+        return 0.0 if isnan(self.seen.current_a) else self.seen.current_a
+
+    @property
+    def temperature_c(self) -> float:
+        """What it measures of the temperature [deg C]; that of a room without a sensor."""
+        return _ROOM_C if isnan(self.seen.temperature_c) else self.seen.temperature_c
 
     def advance_to(self, time_s: float) -> None:
         """Run every tick that is over at a time [s]."""

@@ -52,7 +52,6 @@ def test_f_load_selects_the_curve_of_its_load(row):
     for curve in friction.curves:
         selected_a = friction.over_friction().current_a(50.0, curve.f_load_a)
         assert selected_a == pytest.approx(float(curve.curve().sliding_a(50.0)))
-    assert friction.over_load().selectors == (0.0, 0.1)
 
 
 def test_an_imported_recording_set_gives_the_same_curves_from_its_samples(store, row, tmp_path):

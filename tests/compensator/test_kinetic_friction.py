@@ -22,15 +22,6 @@ def test_eq_2_is_odd_in_speed():
     np.testing.assert_allclose(CURVE.sliding_a(speeds), -CURVE.sliding_a(-speeds))
 
 
-@pytest.mark.parametrize(("applied", "friction"), [(0.1, 0.1), (-0.29, -0.29), (0.5, 0.3), (-0.5, -0.3)])
-def test_eq_1_at_standstill(applied, friction):
-    assert CURVE.friction_a(0.0, applied) == pytest.approx(friction)
-
-
-def test_eq_1_in_motion_does_not_ask_what_is_applied():
-    assert CURVE.friction_a(3.0, 99.0) == pytest.approx(CURVE.sliding_a(3.0))
-
-
 @pytest.mark.parametrize(
     "wrong",
     [

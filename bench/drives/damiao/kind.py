@@ -1,6 +1,7 @@
 """The Damiao actuator as a kind of drive."""
 
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Literal
 
@@ -62,8 +63,7 @@ def scan(place: CanPlace) -> Iterator[FoundDrive]:
     from drivers.can_bus.settings import BusSettings
     from drivers.damiao import protocol
 
-    port = CanPort(BusSettings(place.interface, place.channel, place.bitrate))
-    try:
+    with closing(CanPort(BusSettings(place.interface, place.channel, place.bitrate))) as port:
         for motor_id in _IDS:
             frame = protocol.register_frame(motor_id, protocol.READ, protocol.Register.TORQUE_RANGE)
             port.send(protocol.REGISTERS_ID, frame)
@@ -76,8 +76,6 @@ def scan(place: CanPlace) -> Iterator[FoundDrive]:
                         "kind": "damiao", "interface": place.interface, "channel": place.channel,
                         "bitrate": place.bitrate, "motor_id": motor_id, "feedback_id": identifier,
                     })  # fmt: skip
-    finally:
-        port.close()
 
 
 KIND = DriveKind(

@@ -1,6 +1,7 @@
 """The ODrive as a kind of drive."""
 
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Literal
 
@@ -62,8 +63,7 @@ def scan(place: CanPlace) -> Iterator[FoundDrive]:
     from drivers.can_bus.settings import BusSettings
     from drivers.odrive.protocol import HEARTBEAT, Command
 
-    port = CanPort(BusSettings(place.interface, place.channel, place.bitrate))
-    try:
+    with closing(CanPort(BusSettings(place.interface, place.channel, place.bitrate))) as port:
         port.wait_for([-1], _LISTEN_S)  # which never comes
         for identifier in port.heard_ids():
             heard = port.last(identifier)
@@ -73,8 +73,6 @@ def scan(place: CanPlace) -> Iterator[FoundDrive]:
                     "kind": "odrive", "interface": place.interface, "channel": place.channel,
                     "bitrate": place.bitrate, "node_id": identifier >> 5, "watchdog_is_set_in_drive": False,
                 })  # fmt: skip
-    finally:
-        port.close()
 
 
 KIND = DriveKind(

@@ -1,6 +1,7 @@
 """The RobStride actuator as a kind of drive."""
 
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -73,8 +74,7 @@ def scan(place: CanPlace) -> Iterator[FoundDrive]:
     from drivers.can_bus.settings import BusSettings
     from drivers.robstride import protocol
 
-    port = CanPort(BusSettings(place.interface, place.channel, place.bitrate))
-    try:
+    with closing(CanPort(BusSettings(place.interface, place.channel, place.bitrate))) as port:
         for motor_id in _IDS:
             port.send(*protocol.frame(protocol.Kind.IDENTIFY, motor_id))
             port.drain()
@@ -86,8 +86,6 @@ def scan(place: CanPlace) -> Iterator[FoundDrive]:
                     "kind": "robstride", "interface": place.interface, "channel": place.channel,
                     "bitrate": place.bitrate, "motor_id": motor_id,
                 })  # fmt: skip
-    finally:
-        port.close()
 
 
 KIND = DriveKind(

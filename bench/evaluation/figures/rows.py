@@ -59,14 +59,18 @@ def _errors_g(seed: SeedResults, name: str) -> Numbers:
     return [1e3 * (row["reflected_load_kg"] - row["load_kg"]) for row in rows]
 
 
-def _mean_absolute_g(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
-    errors_g = _errors_g(seed, "loads")
-    return [float(np.mean(np.abs(errors_g)))] if errors_g else []
+def _whole(errors_g: Callable[[SeedResults], Numbers], of: Callable[[Numbers], Any]) -> Callable[..., Numbers]:
+    """One number of the errors of a seed; none where it has none."""
+
+    def numbers(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
+        found_g = errors_g(seed)
+        return [float(of(found_g))] if found_g else []
+
+    return numbers
 
 
-def _greatest_g(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
-    errors_g = _errors_g(seed, "loads")
-    return [float(np.max(np.abs(errors_g)))] if errors_g else []
+_mean_absolute_g = _whole(lambda seed: _errors_g(seed, "loads"), lambda errors_g: np.mean(np.abs(errors_g)))
+_greatest_g = _whole(lambda seed: _errors_g(seed, "loads"), lambda errors_g: np.max(np.abs(errors_g)))
 
 
 def _hanging_g(seed: SeedResults, configuration: BenchConfiguration) -> Numbers:
@@ -84,29 +88,19 @@ def _spread_ratio(seed: SeedResults, _configuration: BenchConfiguration) -> Numb
     return [1.0 / steps["spread_ratio"]]
 
 
-def _speeds_g(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
-    errors_g = [1e3 * abs(row["mean_error_kg"]) for row in _rows(seed, "speeds")]
-    return [float(np.mean(errors_g))] if errors_g else []
-
-
 def _stroke_errors_g(seed: SeedResults) -> list[float]:
     names = ("forward_mean_error_kg", "backward_mean_error_kg")
     return [1e3 * abs(row[name]) for row in _rows(seed, "speeds") for name in names]
 
 
-def _strokes_g(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
-    errors_g = _stroke_errors_g(seed)
-    return [float(np.mean(errors_g))] if errors_g else []
+def _column_g(name: str) -> Callable[[SeedResults], Numbers]:
+    return lambda seed: [1e3 * abs(row[name]) for row in _rows(seed, "speeds")]
 
 
-def _largest_stroke_g(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
-    errors_g = _stroke_errors_g(seed)
-    return [max(errors_g)] if errors_g else []
-
-
-def _cycles_g(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
-    errors_g = [1e3 * row["mean_absolute_error_kg"] for row in _rows(seed, "speeds")]
-    return [float(np.mean(errors_g))] if errors_g else []
+_speeds_g = _whole(_column_g("mean_error_kg"), np.mean)
+_strokes_g = _whole(_stroke_errors_g, np.mean)
+_largest_stroke_g = _whole(_stroke_errors_g, max)
+_cycles_g = _whole(_column_g("mean_absolute_error_kg"), np.mean)
 
 
 def _rest_bound(seed: SeedResults, configuration: BenchConfiguration) -> Numbers:

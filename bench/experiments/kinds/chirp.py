@@ -1,18 +1,18 @@
 """A sine whose frequency rises through a band, followed as a position or given as a current."""
 
+from functools import partial
 from typing import Literal
 
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
-from bench.experiments.kind import ExperimentKind, TrialPlan
+from bench.experiments.kind import ExperimentKind
 from bench.experiments.parts.injection import (
     RESTS_S,
     FloatArray,
     InjectionParameters,
     plan_injection,
-    refuse_band,
     refuse_injection,
     summarise_injection,
 )
@@ -39,15 +39,6 @@ def chirp(parameters: ChirpParameters, period_s: float) -> FloatArray:
     return np.asarray(np.sin(2.0 * np.pi * cycles) * fade(time_s, duration_s))
 
 
-def _plan(parameters: ChirpParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
-    return plan_injection("chirp", parameters, chirp(parameters, configuration.control.period_s), configuration)
-
-
-def _refuse(parameters: ChirpParameters, configuration: BenchConfiguration) -> None:
-    refuse_band(parameters, configuration)
-    refuse_injection("chirp", parameters, chirp(parameters, configuration.control.period_s), configuration)
-
-
 def _duration_s(parameters: ChirpParameters, _configuration: BenchConfiguration) -> float:
     return parameters.repeats * (parameters.duration_s + RESTS_S)
 
@@ -58,8 +49,8 @@ KIND = ExperimentKind(
     summary="A sine that rises through a band of frequencies, followed as a position or given as a current. It shows "
     "inertia, elasticity and delay, frequency by frequency.",
     parameters=ChirpParameters,
-    plan=_plan,
-    refuse=_refuse,
+    plan=partial(plan_injection, "chirp", chirp),
+    refuse=partial(refuse_injection, "chirp", chirp),
     duration_s=_duration_s,
     summarise=summarise_injection,
     results=PLAYED_RESULTS,

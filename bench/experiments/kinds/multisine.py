@@ -1,11 +1,13 @@
 """Many sines of one period at once, their phases after Schroeder, followed as a position or given as a current."""
 
+from functools import partial
+
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.errors import LimitError
-from bench.experiments.kind import ExperimentKind, FinishedTrial, TrialPlan
+from bench.experiments.kind import ExperimentKind, FinishedTrial
 from bench.experiments.parts.injection import (
     RESTS_S,
     FloatArray,
@@ -57,10 +59,6 @@ def multisine(parameters: MultisineParameters, period_s: float) -> FloatArray:
     return np.asarray(wave / np.max(np.abs(wave)))
 
 
-def _plan(parameters: MultisineParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
-    return plan_injection("multisine", parameters, multisine(parameters, configuration.control.period_s), configuration)
-
-
 def _refuse(parameters: MultisineParameters, configuration: BenchConfiguration) -> None:
     refuse_band(parameters, configuration)
     if not len(frequencies_hz(parameters)):
@@ -68,7 +66,7 @@ def _refuse(parameters: MultisineParameters, configuration: BenchConfiguration) 
             f"no multiple of 1 / wave_s, {1.0 / parameters.wave_s:g} Hz, lies within low_hz .. high_hz, "
             f"{parameters.low_hz:g} .. {parameters.high_hz:g} Hz; choose a longer wave_s or a wider band"
         )
-    refuse_injection("multisine", parameters, multisine(parameters, configuration.control.period_s), configuration)
+    refuse_injection("multisine", multisine, parameters, configuration)
 
 
 def _duration_s(parameters: MultisineParameters, _configuration: BenchConfiguration) -> float:
@@ -85,7 +83,7 @@ KIND = ExperimentKind(
     summary="Many sines at once, with phases that keep the peak low, followed as a position or given as a current; "
     "repeated, so that noise and what is not linear can be told apart.",
     parameters=MultisineParameters,
-    plan=_plan,
+    plan=partial(plan_injection, "multisine", multisine),
     refuse=_refuse,
     duration_s=_duration_s,
     summarise=_summarise,

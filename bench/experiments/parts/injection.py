@@ -1,7 +1,8 @@
 """A wave with a band, given to the joint as a position or as a current: what chirp and multisine have in common."""
 
+from collections.abc import Callable
 from functools import partial
-from typing import Any, Literal, Self
+from typing import Any, Literal, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,11 +63,16 @@ class InjectionParameters(Parameters):
         return {"closed": self.closed, **amplitude, "low_hz": self.low_hz, "high_hz": self.high_hz}
 
 
+ParametersT = TypeVar("ParametersT", bound=InjectionParameters)
+Wave = Callable[[ParametersT, float], FloatArray]
+"""Within -1 .. 1, one value per control period [s], shape (n,); it begins and ends at rest."""
+
+
 def plan_injection(
-    name: str, parameters: InjectionParameters, wave: FloatArray, configuration: BenchConfiguration
+    name: str, wave: Wave[ParametersT], parameters: ParametersT, configuration: BenchConfiguration
 ) -> list[TrialPlan]:
     """One trial per repeat."""
-    signal = parameters.signal(wave)
+    signal = parameters.signal(wave(parameters, configuration.control.period_s))
     return [
         trial_plan(
             configuration,
@@ -91,10 +97,11 @@ def refuse_band(parameters: InjectionParameters, configuration: BenchConfigurati
 
 
 def refuse_injection(
-    name: str, parameters: InjectionParameters, wave: FloatArray, configuration: BenchConfiguration
+    name: str, wave: Wave[ParametersT], parameters: ParametersT, configuration: BenchConfiguration
 ) -> None:
     """Raise `LimitError` for what the bench must not do."""
-    refuse_signal(f"the {name}", parameters.signal(wave), configuration)
+    refuse_band(parameters, configuration)
+    refuse_signal(f"the {name}", parameters.signal(wave(parameters, configuration.control.period_s)), configuration)
 
 
 def summarise_injection(_parameters: Any, trials: list[FinishedTrial]) -> dict[str, Value]:

@@ -1,6 +1,6 @@
 """Rows of the table of experiments. Each function works inside the caller's transaction."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, fields
 from datetime import UTC, datetime
 from typing import Any
@@ -93,50 +93,6 @@ def get(connection: Connection, experiment_id: int) -> Experiment:
     if row is None:
         raise NotFoundError(f"experiment {experiment_id} is not in the store; list the experiments to see which are")
     return Experiment(**row._asdict(), tags=tags.of_experiments(connection, [experiment_id]).get(experiment_id, ()))
-
-
-def find(
-    connection: Connection,
-    kind: str | None,
-    outcome: str | None,
-    source: str | None,
-    tag: str | None,
-    limit: int | None,
-    offset: int,
-) -> list[Experiment]:
-    """Experiments, newest first."""
-    query = (
-        select(*COLUMNS)
-        .where(EXPERIMENT.c.outcome.not_in(HIDDEN))
-        .order_by(EXPERIMENT.c.id.desc())
-        .limit(limit)
-        .offset(offset)
-    )
-    wanted = {"kind": kind, "outcome": outcome, "source": source}
-    for name, value in wanted.items():
-        if value is not None:
-            query = query.where(EXPERIMENT.c[name] == value)
-    if tag is not None:
-        query = query.where(tags.with_tag(tag))
-    rows = connection.execute(query).all()
-    known = tags.of_experiments(connection, [row.id for row in rows])
-    return [Experiment(**row._asdict(), tags=known.get(row.id, ())) for row in rows]
-
-
-def annotate(connection: Connection, experiment_id: int, note: str | None, new_tags: Iterable[str] | None) -> None:
-    """Change note and tags, also of one that has ended; None leaves as it is.
-
-    Raises:
-        NotFoundError: no such experiment.
-        StoreValueError: a tag that cannot be kept.
-    """
-    outcome = get(connection, experiment_id).outcome
-    if note is not None:
-        connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(note=note))
-    if new_tags is not None:
-        tags.write(connection, experiment_id, new_tags)
-    if outcome != "running":
-        chain.seal(connection, "experiment", [experiment_id])
 
 
 def check_outcome(outcome: str) -> None:

@@ -13,7 +13,6 @@ from bench.store.records import HIDDEN, Condition, Event, Trial
 from bench.store.schema import EVENT, EXPERIMENT, TRIAL
 from bench.store.tables import chain
 from bench.store.tables import conditions as condition_rows
-from bench.store.tables.conditions import Wanted
 from bench.store.tables.experiments import check_outcome, insert_row, now
 
 
@@ -93,38 +92,7 @@ def get(connection: Connection, trial_id: int) -> Trial:
     row = connection.execute(query).one_or_none()
     if row is None:
         raise NotFoundError(f"trial {trial_id} is not in the store; list the trials to see which are")
-    return _record(row, condition_rows.of_trials(connection, [row.id]))
-
-
-def find(
-    connection: Connection,
-    experiment_id: int | None,
-    kind: str | None,
-    outcome: str | None,
-    source: str | None,
-    conditions: Mapping[str, Wanted],
-    limit: int | None,
-    offset: int,
-) -> list[Trial]:
-    """Trials in the order in which they were made."""
-    filters = condition_rows.match_all(conditions)
-    hidden = connection.execute(select(EXPERIMENT.c.id).where(EXPERIMENT.c.outcome.in_(HIDDEN))).scalars().all()
-    if hidden:
-        filters.append(TRIAL.c.experiment_id.not_in(hidden))
-    if outcome is not None:
-        filters.append(TRIAL.c.outcome == outcome)
-    if experiment_id is not None:
-        filters.append(TRIAL.c.experiment_id == experiment_id)
-    if kind is not None:
-        filters.append(TRIAL.c.kind == kind)
-    if source is not None:
-        of_source = select(EXPERIMENT.c.id).where(EXPERIMENT.c.source == source)
-        filters.append(TRIAL.c.experiment_id.in_(of_source))
-    # the page is found in indexes alone, then its rows are read: a late page costs no more than an early one
-    page = select(TRIAL.c.id).where(*filters).order_by(TRIAL.c.id).limit(limit).offset(offset).subquery()
-    rows = connection.execute(select(TRIAL).join(page, page.c.id == TRIAL.c.id).order_by(TRIAL.c.id)).all()
-    found = condition_rows.of_trials(connection, [row.id for row in rows])
-    return [_record(row, found) for row in rows]
+    return record(row, condition_rows.of_trials(connection, [row.id]))
 
 
 def of_ids(connection: Connection, ids: Sequence[int]) -> list[Trial]:
@@ -132,7 +100,7 @@ def of_ids(connection: Connection, ids: Sequence[int]) -> list[Trial]:
     query = select(TRIAL).where(TRIAL.c.id.in_(ids), TRIAL.c.outcome.not_in(HIDDEN))
     rows = {row.id: row for row in connection.execute(query)}
     found = condition_rows.of_trials(connection, rows)
-    return [_record(rows[trial_id], found) for trial_id in ids if trial_id in rows]
+    return [record(rows[trial_id], found) for trial_id in ids if trial_id in rows]
 
 
 def _check_experiment(connection: Connection, experiment_id: int, wanted: str) -> None:
@@ -153,6 +121,7 @@ def _check_channels(name: str, channels: Sequence[str]) -> None:
         )
 
 
-def _record(row: Row[Any], conditions: Mapping[int, dict[str, Condition]]) -> Trial:
+def record(row: Row[Any], conditions: Mapping[int, dict[str, Condition]]) -> Trial:
+    """A row, with the conditions of trials by their ids."""
     values = row._asdict() | {"channels": tuple(row.channels), "conditions": conditions[row.id]}
     return Trial(**values)

@@ -20,7 +20,7 @@ from compensator.lab import progress
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.next_trial.confounded import shows_from_rest
-from compensator.lab.next_trial.suggestion import Pair, Pick, Suggestion
+from compensator.lab.next_trial.suggestion import Pick, Suggestion
 
 MOST_TRIALS = 6
 
@@ -81,8 +81,8 @@ def suggest(
         sentence=_sentence(found, diagnosis),
         minutes=sum(pick.minutes for pick in found.picks),
         note=note_for(study_id),
-        pairs=[_pair(pair) for pair in found.pairs],
-        hopeless=[_pair(pair) for pair in found.hopeless],
+        pairs=list(map(PairOfRivals.model_validate, found.pairs)),
+        hopeless=list(map(PairOfRivals.model_validate, found.hopeless)),
         kept_out=[_kept_out(one) for one in impossible],
         trials=[_pick(pick, choice, found, material) for pick, choice in zip(found.picks, chosen, strict=True)],
     )
@@ -105,10 +105,6 @@ def _fitted_ones(material: Material, possible: Sequence[Choice]) -> list[Choice]
             for plan in choice.plans
         )
     ]
-
-
-def _pair(pair: Pair) -> PairOfRivals:
-    return PairOfRivals(true=pair.true, rival=pair.rival, before=pair.before, after=pair.after, promised=pair.promised)
 
 
 def _kept_out(one: Experiment) -> KeptOut:

@@ -297,7 +297,7 @@ class ServoDrive:
             word |= _VOLTAGE
         if self._limited:
             word |= _LIMITED
-        if self._measured.temperature_c() >= _WARM_C:
+        if self.axis.temperature_c >= _WARM_C:
             word |= _WARNING
         if self._is_astray():
             word |= _FOLLOWING_ERROR

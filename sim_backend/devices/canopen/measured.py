@@ -1,7 +1,7 @@
 """What the drive measures and demands, in the units of its objects."""
 
 from collections.abc import Callable
-from math import exp, isnan, pi
+from math import exp, pi
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import TICK_S, Axis
@@ -10,7 +10,6 @@ from sim_backend.devices.canopen.objects.family import Family, Rating
 
 _AVERAGED_OVER_S = 0.01
 _SHARE = 1.0 - exp(-TICK_S / _AVERAGED_OVER_S)  # of the last tick in an average
-_DEFAULT_TEMPERATURE_C = 25.0
 
 
 class Measured:
@@ -38,7 +37,7 @@ class Measured:
 
     def tick(self) -> None:
         """Average over the last tick."""
-        self._current_a += _SHARE * (self.current_a() - self._current_a)
+        self._current_a += _SHARE * (self._axis.current_a - self._current_a)
         self._counts_per_s += _SHARE * (self._axis.counts_per_s() - self._counts_per_s)
 
     def counts_per_s(self, velocity: float) -> float:
@@ -53,11 +52,6 @@ class Measured:
         """Return counts of the encoder in the drive's unit of position."""
         return round(counts / self._unit_counts)
 
-    def current_a(self) -> float:
-        """Return the motor's current [A]; 0 without a sensor."""
-        current_a = self._axis.seen.current_a
-        return 0.0 if isnan(current_a) else current_a
-
     def current_of_torque(self, permille: float) -> float:
         """Return the current [A] that makes a torque in permille of the rated."""
         return permille * 1e-3 * self._rated_n_m() / self._constant_n_m_a
@@ -65,11 +59,6 @@ class Measured:
     def torque_of_current(self, current_a: float) -> float:
         """Return the torque in permille of the rated that a current makes."""
         return current_a * self._constant_n_m_a / self._rated_n_m() * 1e3
-
-    def temperature_c(self) -> float:
-        """Return the temperature of the power stage [degC]."""
-        temperature_c = self._axis.seen.temperature_c
-        return _DEFAULT_TEMPERATURE_C if isnan(temperature_c) else temperature_c
 
     def live(self) -> dict[Place, Callable[[], int]]:
         """Return how each object comes by its value; standard ones that a family has not do no harm."""
@@ -80,22 +69,22 @@ class Measured:
 
         own = {
             (0x2001, 0): lambda: round(seen().duty * 1e3),
-            (0x2002, 0): lambda: round(self.temperature_c() * 10.0),
+            (0x2002, 0): lambda: round(self._axis.temperature_c * 10.0),
             (0x2200, 1): lambda: round(seen().supply_v * 10.0),
             (0x30D0, 0): lambda: round(self.demand_a * 1e3),
             (0x30D1, 1): lambda: round(self._current_a * 1e3),
-            (0x30D1, 2): lambda: round(self.current_a() * 1e3),
+            (0x30D1, 2): lambda: round(self._axis.current_a * 1e3),
             (0x30D2, 1): lambda: round(self.torque_of_current(self._current_a)),
             (0x30D3, 1): lambda: self._velocity(self._counts_per_s),
-            (0x3201, 1): lambda: round(self.temperature_c() * 10.0),
+            (0x3201, 1): lambda: round(self._axis.temperature_c * 10.0),
             (0x3203, 1): lambda: round(abs(seen().duty) * 1e3),
         }
         standard = {
             (0x6064, 0): lambda: self.position(axis.counts()),
             (0x606C, 0): lambda: self._velocity(axis.counts_per_s()),
             (0x6074, 0): lambda: round(self.torque_of_current(self.demand_a)),
-            (0x6077, 0): lambda: round(self.torque_of_current(self.current_a())),
-            (0x6078, 0): lambda: round(self.current_a() * 1e6 / max(self._dictionary.number(0x6075), 1)),
+            (0x6077, 0): lambda: round(self.torque_of_current(self._axis.current_a)),
+            (0x6078, 0): lambda: round(self._axis.current_a * 1e6 / max(self._dictionary.number(0x6075), 1)),
             (0x6079, 0): lambda: round(seen().supply_v * 1e3),
         }
         return standard | {place: source for place, source in own.items() if place in self._own}

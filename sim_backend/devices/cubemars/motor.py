@@ -41,7 +41,7 @@ class CubemarsMotor(MitMotor):
         elif self.is_on:
             self.command = command_of(data, self._top)
         told = bytes((self._motor_id,)) + motion_of(self, self._top)
-        self.node.send(Frame(self._motor_id, told + bytes((round(self.temperature_c) + _ZERO_C, self._error))))
+        self.node.send(Frame(self._motor_id, told + bytes((round(self.axis.temperature_c) + _ZERO_C, self._error))))
         return True
 
     def trip(self, cause: Trip | None) -> None:

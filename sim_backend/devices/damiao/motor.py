@@ -98,7 +98,7 @@ class DamiaoMotor(MitMotor):
 
     def _answer(self) -> None:
         head = bytes((self._state << 4 | self._motor_id & 0x0F,))
-        data = head + motion_of(self, self._top) + bytes((_ROTOR_C, round(self.temperature_c)))
+        data = head + motion_of(self, self._top) + bytes((_ROTOR_C, round(self.axis.temperature_c)))
         self.node.send(Frame(self._feedback_id, data))
 
     def _register(self, data: bytes) -> None:

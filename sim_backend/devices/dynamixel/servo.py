@@ -1,6 +1,6 @@
 """One X servo: answers packets, closes its modes, stops when its bus is silent."""
 
-from math import copysign, isnan, pi
+from math import copysign, pi
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import CURRENT, OFF, VOLTAGE, Axis, Demand
@@ -14,7 +14,6 @@ SIMULATED_FIRMWARE = 255
 _REVOLUTION = 4096
 _VELOCITY_RAD_S = 0.229 * 2.0 * pi / 60.0
 _REBOOT_S = 0.05
-_DEFAULT_C = 25.0
 FAILED, UNKNOWN_INSTRUCTION, OUT_OF_RANGE, WRONG_LENGTH, NO_ACCESS, ALERT = 1, 2, 4, 5, 7, 0x80
 INPUT_VOLTAGE, OVERHEATING, ELECTRICAL_SHOCK, OVERLOAD = 1, 4, 16, 32
 TORQUE, ERROR, WATCHDOG, MODE = 64, 70, 98, 11
@@ -181,8 +180,7 @@ class XServo:
 
     def _measure(self) -> None:
         """Bring the measured items up to date."""
-        seen, memory = self.axis.seen, self.memory
-        current_a = 0.0 if isnan(seen.current_a) else seen.current_a
+        seen, memory, current_a = self.axis.seen, self.memory, self.axis.current_a
         step_a = self._kind.current_a
         load = current_a / step_a if step_a else 1000.0 * abs(seen.duty) * copysign(1.0, current_a)
         memory.put(124, "h", round(seen.duty * 885.0))
@@ -191,7 +189,7 @@ class XServo:
         memory.put(132, "i", self.axis.counts() + memory.get(20, "i"))
         memory.put(120, "H", round(self.axis.time_s * 1e3) % 32768)
         memory.put(144, "H", round(seen.supply_v * 10.0))
-        memory.put(146, "B", round(_DEFAULT_C if isnan(seen.temperature_c) else seen.temperature_c))
+        memory.put(146, "B", round(self.axis.temperature_c))
 
 
 def _piece(parameters: bytes) -> tuple[int, int]:

@@ -1,6 +1,5 @@
 """One STS servo: answers packets, drives in open loop or to a position. It has no watchdog."""
 
-from math import isnan
 from struct import pack_into, unpack_from
 
 from drivers.contract import Sample
@@ -13,7 +12,6 @@ from sim_backend.plant.parameters import PlantParameters
 SIMULATED_FIRMWARE = (255, 255)
 STS3215 = 777
 TURN = 4096
-_DEFAULT_C = 25.0
 VOLTAGE_BIT, HEAT_BIT, CURRENT_BIT, OVERLOAD_BIT = 1, 4, 8, 32
 _MEASURED = range(56, 72)
 _READ_ONLY = (range(5), _MEASURED)
@@ -116,14 +114,13 @@ class StsServo:
     def _measure(self) -> None:
         """Bring the measured items up to date."""
         seen = self.axis.seen
-        current_a = 0.0 if isnan(seen.current_a) else seen.current_a
         self._put(56, "H", (self.axis.counts() + self._offset) % TURN)
         self._put(58, "H", _word(self.axis.counts_per_s(), 15))
         self._put(60, "H", _word(seen.duty * 1000.0, 10))
         self._bytes[62] = min(round(seen.supply_v * 10.0), 255)
-        self._bytes[63] = round(_DEFAULT_C if isnan(seen.temperature_c) else seen.temperature_c)
+        self._bytes[63] = round(self.axis.temperature_c)
         self._bytes[66] = int(seen.velocity_rad_s != 0.0)
-        self._put(69, "H", _word(current_a / _CURRENT_STEP_A, 15))
+        self._put(69, "H", _word(self.axis.current_a / _CURRENT_STEP_A, 15))
 
     def _put(self, address: int, letter: str, value: int) -> None:
         pack_into("<" + letter, self._bytes, address, value)

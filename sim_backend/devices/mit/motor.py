@@ -1,7 +1,6 @@
 """An actuator whose torque is its feed-forward term, and what its gains make of position and speed."""
 
 from abc import ABC, abstractmethod
-from math import isnan
 from threading import RLock
 from typing import NamedTuple
 
@@ -10,8 +9,6 @@ from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand
 from sim_backend.devices.can.frame import Frame, QuietNode
 from sim_backend.faults.script import Trip
 from sim_backend.plant.parameters import PlantParameters
-
-_DEFAULT_C = 25.0
 
 
 class Command(NamedTuple):
@@ -118,14 +115,7 @@ class MitMotor(ABC):
     @property
     def torque_n_m(self) -> float:
         """By its current sensor [N m]; 0 without one."""
-        current_a = self.axis.seen.current_a
-        return 0.0 if isnan(current_a) else current_a * self._torque_constant_n_m_a
-
-    @property
-    def temperature_c(self) -> float:
-        """By its sensor [deg C]."""
-        found_c = self.axis.seen.temperature_c
-        return _DEFAULT_C if isnan(found_c) else found_c
+        return self.axis.current_a * self._torque_constant_n_m_a
 
 
 def number(word: int, bits: int, low: float, high: float) -> float:

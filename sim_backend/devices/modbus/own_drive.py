@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from enum import IntEnum
-from math import isnan
 from threading import RLock
 
 from drivers.contract import Sample
@@ -13,7 +12,6 @@ from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, 
 from sim_backend.plant.parameters import PlantParameters
 
 READS, WRITES = frozenset({3, 4, 23}), frozenset({6, 16, 23})
-_DEFAULT_TEMPERATURE_C = 25.0
 _WARM_C = 85.0
 
 
@@ -136,9 +134,9 @@ class OwnDrive:
             "position": lambda: (axis.counts() + 2**31) % 2**32 - 2**31,
             "velocity": lambda: round(axis.counts_per_s()),
             "duty": lambda: round(axis.seen.duty * 1e4),
-            "current": lambda: 0 if isnan(axis.seen.current_a) else round(axis.seen.current_a * 1e3),
+            "current": lambda: round(axis.current_a * 1e3),
             "supply": lambda: round(axis.seen.supply_v * 1e2),
-            "temperature": lambda: round(self._temperature_c() * 10.0),
+            "temperature": lambda: round(axis.temperature_c * 10.0),
             "time": lambda: round(axis.seen.time_s * 1e3) % 2**32,
         }
 
@@ -146,11 +144,7 @@ class OwnDrive:
         status = int(self._state)
         status |= _LIMITED if self._limited else 0
         status |= _DISABLED if self.axis.torque_is_disabled() else 0
-        return status | (_WARM if self._temperature_c() >= _WARM_C else 0)
-
-    def _temperature_c(self) -> float:
-        temperature_c = self.axis.seen.temperature_c
-        return _DEFAULT_TEMPERATURE_C if isnan(temperature_c) else temperature_c
+        return status | (_WARM if self.axis.temperature_c >= _WARM_C else 0)
 
     # the real-time half ---------------------------------------------------------------------------------
 

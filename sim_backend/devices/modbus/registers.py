@@ -42,11 +42,6 @@ class Register:
     low: int | None = None
     high: int | None = None
 
-    @property
-    def is_writable(self) -> bool:
-        """Whether a host may write it."""
-        return self.low is not None
-
 
 def to_words(value: int, kind: Kind, low_word_first: bool) -> list[int]:
     """Return the registers of a value; one beyond its type becomes the nearest that is not."""

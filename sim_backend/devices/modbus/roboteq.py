@@ -1,7 +1,6 @@
 """A drive that answers like a Roboteq controller on Modbus; what is known of it is in docs/modbus-map.md."""
 
 from collections.abc import Callable
-from math import isnan
 from threading import RLock
 
 from drivers.contract import Sample
@@ -25,7 +24,6 @@ _FULL = 1000
 _VARIABLES = range(1, 5)
 _SET_VARIABLE, _VARIABLE = 0x00A0, 0x20C0
 _OVERHEAT, _UNDER_VOLTAGE, _SHORT, _EMERGENCY = 1, 4, 8, 16
-_DEFAULT_TEMPERATURE_C = 25.0
 
 
 class Roboteq:
@@ -102,7 +100,7 @@ class Roboteq:
         axis = self.axis
         variables = {_VARIABLE + place: self._variable(place) for place in _VARIABLES}
         return variables | {
-            0x2001: lambda: 0 if isnan(axis.seen.current_a) else round(axis.seen.current_a * 10.0),
+            0x2001: lambda: round(axis.current_a * 10.0),
             0x2021: lambda: self._command,
             0x2041: lambda: round(axis.seen.duty * _FULL),
             0x2061: lambda: round(axis.counts_per_s() * 60.0 / self._turn_counts),
@@ -110,17 +108,13 @@ class Roboteq:
             0x21A1: lambda: 120,
             0x21A2: lambda: round(axis.seen.supply_v * 10.0),
             0x21A3: lambda: 4730,
-            0x21E1: self._temperature,
-            0x21E2: self._temperature,
+            0x21E1: lambda: round(axis.temperature_c),
+            0x21E2: lambda: round(axis.temperature_c),
             0x2240: self._faults,
         }
 
     def _variable(self, place: int) -> Callable[[], int]:
         return lambda: self._variables[place]
-
-    def _temperature(self) -> int:
-        temperature_c = self.axis.seen.temperature_c
-        return round(_DEFAULT_TEMPERATURE_C if isnan(temperature_c) else temperature_c)
 
     def _faults(self) -> int:
         trip = self.axis.trip()

@@ -13,7 +13,6 @@ STOPPED, FAULT, POSITION, TIMEOUT, BRAKING = 0, 1, 10, 11, 15
 DRIVER_FAULT, HOT, UNDER_VOLTAGE, NOT_ENABLED = 33, 38, 40, 44
 VERSION = 0x010B00
 SERIAL = (0x0000_0000, 0x5349_4D55, 0x4C41_5445)  # so that no record of it is taken for one of hardware
-_DEFAULT_C = 25.0
 _DEFAULT_TIMEOUT_S = 0.1
 _STIFFNESS, _DAMPING = 0.02, 0.001  # N m / turn, N m s / turn, at the scale of 1
 _PLAIN: Scale = (1.0, 1.0, 1.0)
@@ -135,8 +134,7 @@ class MoteusController:
 
     def _registers(self) -> dict[int, tuple[float, Scale]]:
         seen = self.axis.seen
-        current_a = 0.0 if isnan(seen.current_a) else seen.current_a
-        heat_c = _DEFAULT_C if isnan(seen.temperature_c) else seen.temperature_c
+        current_a, heat_c = self.axis.current_a, self.axis.temperature_c
         return {
             0x000: (self._mode, _PLAIN), 0x001: (seen.position_rad / self._turn_rad, _TURNS),
             0x002: (seen.velocity_rad_s / self._turn_rad, _SPEED),

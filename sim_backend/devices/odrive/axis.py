@@ -16,7 +16,6 @@ HEARTBEAT_S, ESTIMATES_S = 0.1, 0.01
 DRV_FAULT, UNDER_VOLTAGE, CURRENT_LIMIT, MOTOR_HOT = 0x20, 0x200, 0x1000, 0x2000
 WATCHDOG, ESTOP = 0x1000000, 0x2000000
 UNRELEASED = 255  # so that no record of it is taken for one of hardware
-_DEFAULT_C = 25.0
 _LIMIT_A = 20.0
 
 
@@ -48,10 +47,10 @@ class OdriveAxis:
             0x00: lambda: bytes((2, 4, 4, 58, 0, 6, 11, UNRELEASED)),
             0x03: lambda: pack("<II", self._errors, self._disarmed_for),
             0x09: self._estimates,
-            0x14: lambda: pack("<ff", self._wanted_a(), self._current_a()),
-            0x15: lambda: pack("<ff", *(2 * [self._temperature_c()])),
-            0x17: lambda: pack("<ff", self.axis.seen.supply_v, abs(self._current_a() * self.axis.seen.duty)),
-            0x1C: lambda: pack("<ff", self._torque_n_m, self._current_a() * self._torque_constant_n_m_a),
+            0x14: lambda: pack("<ff", self._wanted_a(), self.axis.current_a),
+            0x15: lambda: pack("<ff", *(2 * [self.axis.temperature_c])),
+            0x17: lambda: pack("<ff", self.axis.seen.supply_v, abs(self.axis.current_a * self.axis.seen.duty)),
+            0x1C: lambda: pack("<ff", self._torque_n_m, self.axis.current_a * self._torque_constant_n_m_a),
         }
 
     # what the threads around it call ------------------------------------------------------------------
@@ -141,14 +140,6 @@ class OdriveAxis:
     def _estimates(self) -> bytes:
         seen = self.axis.seen
         return pack("<ff", seen.position_rad / self._turn_rad, seen.velocity_rad_s / self._turn_rad)
-
-    def _current_a(self) -> float:
-        current_a = self.axis.seen.current_a
-        return 0.0 if isnan(current_a) else current_a
-
-    def _temperature_c(self) -> float:
-        temperature_c = self.axis.seen.temperature_c
-        return _DEFAULT_C if isnan(temperature_c) else temperature_c
 
 
 def _error_of(trip: Trip | None) -> int:

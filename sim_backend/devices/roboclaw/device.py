@@ -1,7 +1,7 @@
 """The RoboClaw: answers packets, drives motor 1. Nothing is wired to motor 2."""
 
 from collections import deque
-from math import exp, isnan
+from math import exp
 from struct import pack
 from threading import RLock
 
@@ -19,7 +19,6 @@ SPEED_WINDOW_S = 1.0 / 300.0  # of commands 30, 31
 MEASURED = {"encoder": {"speed_window_s": SPEED_WINDOW_S}}
 _SPEED_LAG_S = 0.02  # of commands 18, 19, which the manual calls filtered and does not say how
 _SPEED_SHARE = 1.0 - exp(-TICK_S / _SPEED_LAG_S)
-_DEFAULT_TEMPERATURE_C = 25.0
 
 Values = tuple[int, ...]
 
@@ -76,7 +75,7 @@ class RoboClaw:
 
     # the real-time half ----------------------------------------------------------------------------------
 
-    def demand(self, seen: Sample) -> Demand:
+    def demand(self, seen: Sample) -> Demand:  # noqa: ARG002
         """Return the duty of motor 1 for the coming tick."""
         counts, raw = self.axis.counts(), self.axis.counts_per_s()
         self._counters[0].follow(counts)
@@ -87,8 +86,8 @@ class RoboClaw:
             self._stop()
             return OFF
         limit_a = self.settings.current_limits[0][0] * 0.01
-        current_a = 0.0 if isnan(seen.current_a) else seen.current_a
-        return Demand(VOLTAGE, self._channels[0].duty(raw, self.settings.velocity_pids[0], current_a, limit_a))
+        duty = self._channels[0].duty(raw, self.settings.velocity_pids[0], self.axis.current_a, limit_a)
+        return Demand(VOLTAGE, duty)
 
     def _watch(self) -> None:
         timeout = self.settings.serial_timeout
@@ -158,8 +157,7 @@ class RoboClaw:
 
     def read_currents(self) -> Values:
         """Command 49 [10 mA]."""
-        current_a = self.axis.seen.current_a
-        return 0 if isnan(current_a) else _short(round(current_a * 100.0)), 0
+        return _short(round(self.axis.current_a * 100.0)), 0
 
     def read_main_voltage(self) -> Values:
         """Command 24 [0.1 V]."""
@@ -167,17 +165,13 @@ class RoboClaw:
 
     def read_temperature(self) -> Values:
         """Commands 82, 83 [0.1 degC]."""
-        return (round(self._temperature_c() * 10.0),)
+        return (round(self.axis.temperature_c * 10.0),)
 
     def restore_defaults(self) -> Values:
         """Command 80."""
         self._stop()
         self.settings = Settings()
         return ()
-
-    def _temperature_c(self) -> float:
-        temperature_c = self.axis.seen.temperature_c
-        return _DEFAULT_TEMPERATURE_C if isnan(temperature_c) else temperature_c
 
     def _status(self) -> Flag:
         status = Flag(0)
@@ -188,7 +182,7 @@ class RoboClaw:
             status |= Flag.E_STOP
         if self._channels[0].limited:
             status |= Flag.MOTOR_1_CURRENT_WARNING
-        if self._temperature_c() >= WARM_C:
+        if self.axis.temperature_c >= WARM_C:
             status |= Flag.TEMPERATURE_WARNING
         if self.axis.seen.supply_v * 10.0 < self.settings.main_limits[0]:
             status |= Flag.MAIN_LOW_WARNING

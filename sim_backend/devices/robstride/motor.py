@@ -127,7 +127,7 @@ class RobstrideMotor(MitMotor):
         position, speed, torque = self._top
         self._send(2, self._state, pack(
             ">HHHH", word_of(self.position_rad, 16, -position, position), word_of(self.speed_rad_s, 16, -speed, speed),
-            word_of(self.torque_n_m, 16, -torque, torque), round(10.0 * self.temperature_c),
+            word_of(self.torque_n_m, 16, -torque, torque), round(10.0 * self.axis.temperature_c),
         ))  # fmt: skip
 
     def _send(self, kind: int, state: int, data: bytes) -> None:

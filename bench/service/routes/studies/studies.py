@@ -1,5 +1,6 @@
 """/studies: make one, change its models, give it trials, hand a model to the bench. GET is in `study_answers`."""
 
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from fastapi import Depends, Path, Request, Response
@@ -30,6 +31,7 @@ else:
     from bench.service.later import bench
 
 router = api_router("/studies", tags=["studies"], dependencies=[Depends(allow_read)])
+made = partial(router.post, status_code=201, dependencies=[Depends(require_token)], responses=problems(401, 404, 422))
 StudyId = Annotated[int, Path(ge=1, description="number of the study")]
 
 
@@ -113,13 +115,7 @@ class UseModel(BaseModel):
     model_id: int | None = Field(default=None, ge=1, description="null: the newest of the study")
 
 
-@router.post(
-    "",
-    status_code=201,
-    summary="Create a study",
-    dependencies=[Depends(require_token)],
-    responses=problems(401, 404, 422),
-)
+@made("", summary="Create a study")
 async def create(request: Request, response: Response, body: NewStudy) -> Study:
     """Fixes the trials and fits the base model."""
     found = await in_lab(
@@ -141,19 +137,12 @@ async def create(request: Request, response: Response, body: NewStudy) -> Study:
 @router.get("", summary="The studies", responses=problems(422))
 def studies(store: StoreOf, limit: Limit = 100, offset: Offset = 0) -> Studies:
     """Newest first."""
-    rows = sorted(store.studies(), key=lambda row: row.id, reverse=True)
-    found, page = cut(rows[offset : offset + limit + 1], limit, offset)
+    found, page = cut(store.studies(limit + 1, offset), limit, offset)
     items = [StudyName(study_id=row.id, name=row.name, created_utc=row.created_utc) for row in found]
     return Studies(items=items, **page)
 
 
-@router.post(
-    "/{study_id}/models",
-    status_code=201,
-    summary="Add an effect to a model, or drop one",
-    dependencies=[Depends(require_token)],
-    responses=problems(401, 404, 422),
-)
+@made("/{study_id}/models", summary="Add an effect to a model, or drop one")
 async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
     """Refits and keeps the child model; answers with the error before and after."""
     function = bench.study.changes.add_effect if body.action == "add" else bench.study.changes.drop_effect
@@ -162,13 +151,7 @@ async def change(request: Request, study_id: StudyId, body: Change) -> Changed:
     return found
 
 
-@router.post(
-    "/{study_id}/search",
-    status_code=201,
-    summary="Add effects until nothing is missing",
-    dependencies=[Depends(require_token)],
-    responses=problems(401, 404, 422),
-)
+@made("/{study_id}/search", summary="Add effects until nothing is missing")
 async def search_effects(request: Request, study_id: StudyId, body: SearchFrom) -> Searched:
     """Adds, exchanges and drops effects one after the other; every model on the way is kept. Takes a while."""
     found = await in_lab(request, bench.study.diagnosis.search.search, study_id, body.model_id, body.most)
@@ -189,25 +172,13 @@ async def suggest_trials(request: Request, runner: RunnerOf, study_id: StudyId, 
     )
 
 
-@router.post(
-    "/{study_id}/trials",
-    status_code=201,
-    summary="Add trials to a study",
-    dependencies=[Depends(require_token)],
-    responses=problems(401, 404, 422),
-)
+@made("/{study_id}/trials", summary="Add trials to a study")
 async def add_trials(request: Request, study_id: StudyId, body: MoreTrials) -> Extended:
     """Refits the newest model to all trials; earlier models stay what they were."""
     return await in_lab(request, bench.study.extend.extend_study, study_id, body.experiment_ids)
 
 
-@router.post(
-    "/{study_id}/use",
-    status_code=201,
-    summary="Hand a model to the online compensator",
-    dependencies=[Depends(require_token)],
-    responses=problems(401, 404, 422),
-)
+@made("/{study_id}/use", summary="Hand a model to the online compensator")
 async def use_model(request: Request, runner: RunnerOf, study_id: StudyId, body: UseModel) -> Used:
     """Kept as a calibration, which the bench uses from the next experiment on."""
     return await in_lab(request, bench.study.use.use, study_id, runner.configuration, body.model_id)

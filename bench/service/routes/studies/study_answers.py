@@ -1,5 +1,6 @@
 """GET of /studies: what is computed from a study. It stays the same until a model is added, and is not sent twice."""
 
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 from fastapi import Depends, Path, Query, Request, Response
@@ -53,6 +54,9 @@ def kept(request: Request, response: Response, store: StoreOf, study_id: StudyId
     response.headers.update(conditional.unless_known(request, request.app.state.life, found, models))
 
 
+answer = partial(router.get, dependencies=[Depends(kept)], responses=problems(404, 422) | conditional.ANSWER)
+
+
 @router.get(
     "/{study_id}",
     summary="One study",
@@ -64,34 +68,19 @@ async def one_study(request: Request, study_id: StudyId) -> Study:
     return await in_lab(request, bench.study.create.describe, study_id)
 
 
-@router.get(
-    "/{study_id}/compare",
-    summary="Measured against predicted",
-    dependencies=[Depends(kept)],
-    responses=problems(404, 422) | conditional.ANSWER,
-)
+@answer("/{study_id}/compare", summary="Measured against predicted")
 async def compare_model(request: Request, study_id: StudyId, model_id: ModelId = None) -> Comparison:
     """Series, residual against each driving variable with bands, error per trial and regime, parameters."""
     return await in_lab(request, bench.study.compare.compare, study_id, model_id)
 
 
-@router.get(
-    "/{study_id}/diagnose",
-    summary="Which effect is missing",
-    dependencies=[Depends(kept)],
-    responses=problems(404, 422) | conditional.ANSWER,
-)
+@answer("/{study_id}/diagnose", summary="Which effect is missing")
 async def diagnose_model(request: Request, study_id: StudyId, model_id: ModelId = None) -> Diagnosis:
     """Effects ranked by evidence; those that the data cannot tell apart are one class. Takes seconds."""
     return await in_lab(request, bench.study.diagnosis.diagnose.diagnose, study_id, model_id)
 
 
-@router.get(
-    "/{study_id}/ladder",
-    summary="The error from model to model",
-    dependencies=[Depends(kept)],
-    responses=problems(404, 422) | conditional.ANSWER,
-)
+@answer("/{study_id}/ladder", summary="The error from model to model")
 async def all_models(request: Request, study_id: StudyId) -> Ladder:
     """Training and held-out error of every model of the study."""
     return await in_lab(request, bench.study.ladder.ladder, study_id)
@@ -117,12 +106,7 @@ async def report(request: Request, runner: RunnerOf, study_id: StudyId) -> Respo
     return Response(page, media_type="text/html", headers=headers)
 
 
-@router.get(
-    "/{study_id}/closed-loop",
-    summary="Where the model's joint goes",
-    dependencies=[Depends(kept)],
-    responses=problems(404, 422) | conditional.ANSWER,
-)
+@answer("/{study_id}/closed-loop", summary="Where the model's joint goes")
 async def closed_loop(
     request: Request, study_id: StudyId, model_id: ModelId = None, refine: Refine = False
 ) -> ClosedLoop:
@@ -172,12 +156,7 @@ async def action(
     return await in_lab(request, bench.study.plots.moments.action, study_id, effect, model_id)
 
 
-@router.get(
-    "/{study_id}/drivers",
-    summary="What drives the residual, over time",
-    dependencies=[Depends(kept)],
-    responses=problems(404, 422) | conditional.ANSWER,
-)
+@answer("/{study_id}/drivers", summary="What drives the residual, over time")
 async def drivers(
     request: Request, study_id: StudyId, trial_id: Annotated[int, Query(ge=1, description="of the study")]
 ) -> DriversOverTime:
