@@ -1,5 +1,7 @@
 """What a kind of actuator has to bring: its protocol, in raw words, without any state of its own."""
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import Protocol
 
 from drivers.actuator.reading import Identity, Reading
@@ -59,3 +61,21 @@ class Actuator(Protocol):
 
     def close(self) -> None:
         """Give the port back. Never raises."""
+
+
+class OnSharedBus(ABC):
+    """What actuators do alike whose bus others may be on; `_leave` gives the bus back."""
+
+    _leave: Callable[[], None]
+
+    @abstractmethod
+    def exchange(self, mode: Mode, value: float) -> Reading:
+        """As of `Actuator`."""
+
+    def ask(self) -> Reading:
+        """The question alone."""
+        return self.exchange(Mode.OFF, 0.0)
+
+    def close(self) -> None:
+        """Give the bus back, where nobody else uses it."""
+        self._leave()

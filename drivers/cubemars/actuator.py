@@ -35,6 +35,8 @@ class CubemarsActuator(MitActuator):
     def __init__(self, port: CanPort, settings: CubemarsSettings, joint: JointScale, leave: Callable[[], None]) -> None:
         super().__init__(port, settings, joint, settings.answer_id, leave)
         self._settings = settings
+        self.enable, self.disable = (settings.motor_id, ENABLE), (settings.motor_id, DISABLE)
+        self.clear = self.disable  # an error goes with its cause
         written = settings.position_range_rad, settings.speed_range_rad_s, settings.torque_range_n_m
         self.ranges = chosen_ranges(self.device, settings.model, protocol.MODELS, written)
         if not settings.accept_no_watchdog:
@@ -52,7 +54,7 @@ class CubemarsActuator(MitActuator):
                 "it is simulated by what its section says (is_simulated): its frames do not tell",
             )
         self._is_on = False
-        self._last: Frame = self.disable_frame()
+        self._last: Frame = self.disable
         self.switch_off()
         self.check_alone()
         self.reading(perf_counter())
@@ -66,18 +68,6 @@ class CubemarsActuator(MitActuator):
         """What it was told last, again: the frame that powers off, or the last torque."""
         return self._last
 
-    def enable_frame(self) -> Frame:
-        """Enter motor mode."""
-        return self._settings.motor_id, ENABLE
-
-    def disable_frame(self) -> Frame:
-        """Leave motor mode."""
-        return self._settings.motor_id, DISABLE
-
-    def clear_frame(self) -> Frame:
-        """Leave motor mode: an error goes with its cause."""
-        return self.disable_frame()
-
     def switch_on(self, mode: Mode, here: Reading) -> None:
         """Enter motor mode, at a torque of 0."""
         self._is_on = True
@@ -88,7 +78,7 @@ class CubemarsActuator(MitActuator):
         if self._is_on:
             with suppress(DriveConnectionError):
                 self.told(self.torque_frame(0.0, 0.0))
-        self._last = self.disable_frame()
+        self._last = self.disable
         super().switch_off()
         self._is_on = False
 

@@ -31,6 +31,7 @@ class DamiaoActuator(MitActuator):
     def __init__(self, port: CanPort, settings: DamiaoSettings, joint: JointScale, leave: Callable[[], None]) -> None:
         super().__init__(port, settings, joint, settings.feedback_id, leave)
         self._settings = settings
+        self.enable, self.disable, self.clear = ((settings.motor_id, one) for one in (ENABLE, DISABLE, CLEAR_ERRORS))
         software = int(self._read(Register.SOFTWARE, protocol.WORD))
         self.ranges = self._checked_ranges()
         self.identity = Identity(
@@ -49,18 +50,6 @@ class DamiaoActuator(MitActuator):
     def question(self) -> Frame:
         """The register frame that asks for feedback."""
         return protocol.REGISTERS_ID, register_frame(self._settings.motor_id, protocol.ASK)
-
-    def enable_frame(self) -> Frame:
-        """Enable."""
-        return self._settings.motor_id, ENABLE
-
-    def disable_frame(self) -> Frame:
-        """Disable."""
-        return self._settings.motor_id, DISABLE
-
-    def clear_frame(self) -> Frame:
-        """Clear its errors."""
-        return self._settings.motor_id, CLEAR_ERRORS
 
     def addresses(self) -> str:
         """ESC_ID and MST_ID."""

@@ -1,11 +1,12 @@
 """One actuator of the MIT protocol on its bus: a frame out, a frame in."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from math import nan, pi
 from time import perf_counter
 from typing import Protocol
 
+from drivers.actuator.actuator import OnSharedBus
 from drivers.actuator.open_buses import check_alone
 from drivers.actuator.reading import Identity, Reading
 from drivers.can_bus.port import CanPort, Heard
@@ -34,7 +35,7 @@ class MitSettings(Protocol):
         """Longest wait for one answer [s]."""
 
 
-class MitActuator(ABC):
+class MitActuator(OnSharedBus):
     """What actuators of every vendor do alike; a kind says what its frames are.
 
     Args:
@@ -46,6 +47,8 @@ class MitActuator(ABC):
 
     Attributes:
         ranges: what its numbers mean; set by the kind, before it is switched on.
+        enable, disable, clear: the frames that power its stage, take the power away, and clear its errors; set by the
+            kind.
         bits: of position, speed and torque in its answers.
     """
 
@@ -56,6 +59,9 @@ class MitActuator(ABC):
     temperature_step_c = 1.0
     identity: Identity
     ranges: Ranges
+    enable: Frame
+    disable: Frame
+    clear: Frame
 
     def __init__(
         self, port: CanPort, settings: MitSettings, joint: JointScale, answer_id: int, leave: Callable[[], None]
@@ -74,18 +80,6 @@ class MitActuator(ABC):
     @abstractmethod
     def question(self) -> Frame:
         """The frame that is answered, and changes neither motion nor power."""
-
-    @abstractmethod
-    def enable_frame(self) -> Frame:
-        """The frame that powers its stage."""
-
-    @abstractmethod
-    def disable_frame(self) -> Frame:
-        """The frame that takes the power away."""
-
-    @abstractmethod
-    def clear_frame(self) -> Frame:
-        """The frame that clears its errors."""
 
     @abstractmethod
     def taken(self, heard: Heard, asked_s: float) -> Reading:
@@ -116,12 +110,12 @@ class MitActuator(ABC):
     def switch_on(self, mode: Mode, here: Reading) -> None:  # noqa: ARG002
         """Enable it, at a torque of 0."""
         self._brakes = False
-        self.told(self.enable_frame())
+        self.told(self.enable)
         self.exchange(Mode.TORQUE, 0.0)
 
     def switch_off(self) -> None:
         """Disable it."""
-        self.told(self.disable_frame())
+        self.told(self.disable)
 
     def exchange(self, mode: Mode, value: float) -> Reading:
         """Send the torque, or the question that moves nothing, and take the answer."""
@@ -133,24 +127,16 @@ class MitActuator(ABC):
         self._brakes = True
         return Mode.TORQUE, 0.0
 
-    def ask(self) -> Reading:
-        """The question that moves nothing."""
-        return self.exchange(Mode.OFF, 0.0)
-
     def clear_fault(self) -> None:
         """Clear its errors."""
-        self.told(self.clear_frame())
+        self.told(self.clear)
 
     def shout_off(self) -> None:
         """Disable it, and wait for nothing."""
         try:
-            self.bus.send(*self.disable_frame())
+            self.bus.send(*self.disable)
         except DriveConnectionError:
             return
-
-    def close(self) -> None:
-        """Give the bus back, where nobody else uses it."""
-        self._leave()
 
     def tell(self, mode: Mode, value: float) -> None:
         """Send a demand, or ask.

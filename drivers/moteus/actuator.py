@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from time import perf_counter
 
+from drivers.actuator.actuator import OnSharedBus
 from drivers.actuator.open_buses import check_alone
 from drivers.actuator.reading import Identity, Reading
 from drivers.contract import Mode
@@ -19,7 +20,7 @@ TIMEOUT_MODE = "servo.timeout_mode"
 SIMULATED_SERIAL = "4c415445-53494d55-00000000"  # of our own simulated device
 
 
-class MoteusActuator:
+class MoteusActuator(OnSharedBus):
     """A controller, opened: stopped, and told to be off where its watchdog runs out.
 
     Args:
@@ -92,10 +93,6 @@ class MoteusActuator:
         self._brakes = True
         return Mode.TORQUE, 0.0
 
-    def ask(self) -> Reading:
-        """The question alone."""
-        return self.exchange(Mode.OFF, 0.0)
-
     def clear_fault(self) -> None:
         """Stop: it forgets its fault where the cause is gone."""
         self.switch_off()
@@ -103,10 +100,6 @@ class MoteusActuator:
     def shout_off(self) -> None:
         """Stop, and wait for no answer."""
         self.bus.tell(self.servo_id, self._frames.stop)
-
-    def close(self) -> None:
-        """Give the line back, where nobody else uses it."""
-        self._leave()
 
     def question(self, mode: Mode, value: float) -> bytes:
         """The data of a cycle."""

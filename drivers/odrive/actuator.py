@@ -5,6 +5,7 @@ from math import nan
 from struct import Struct
 from time import perf_counter
 
+from drivers.actuator.actuator import OnSharedBus
 from drivers.actuator.open_buses import check_alone
 from drivers.actuator.reading import Identity, Reading
 from drivers.can_bus.port import CanPort, prepare
@@ -23,7 +24,7 @@ STATE_S = 1.0  # longest wait for a change of state, and for the heartbeat that 
 SIMULATED = 255  # "unreleased" of our own simulated device
 
 
-class OdriveActuator:
+class OdriveActuator(OnSharedBus):
     """An axis, opened: idle, its errors seen.
 
     Args:
@@ -121,10 +122,6 @@ class OdriveActuator:
         """A torque of 0: friction brakes."""
         return Mode.TORQUE, 0.0
 
-    def ask(self) -> Reading:
-        """The questions alone."""
-        return self.exchange(Mode.OFF, 0.0)
-
     def clear_fault(self) -> None:
         """Clear its errors."""
         self._send(Command.CLEAR_ERRORS, bytes(1))
@@ -136,10 +133,6 @@ class OdriveActuator:
             self._send(Command.SET_AXIS_STATE, protocol.WORD.pack(protocol.IDLE))
         except DriveConnectionError:
             return
-
-    def close(self) -> None:
-        """Give the bus back, where nobody else uses it."""
-        self._leave()
 
     def tell(self, mode: Mode, value: float) -> dict[int, int]:
         """Send a demand and the questions of a cycle. Returns how often each answer had come before."""

@@ -42,6 +42,8 @@ class RobstrideActuator(MitActuator):
         self._id = settings.motor_id
         super().__init__(port, settings, joint, protocol.answer_id(Kind.FEEDBACK, self._id), leave)
         self._settings = settings
+        self.enable, self.disable = protocol.frame(Kind.ENABLE, self._id), protocol.frame(Kind.STOP, self._id)
+        self.clear = protocol.frame(Kind.STOP, self._id, b"\x01" + bytes(7))  # and stop
         written = settings.position_range_rad, settings.speed_range_rad_s, settings.torque_range_n_m
         self.ranges = chosen_ranges(self.device, settings.model, protocol.MODELS, written)
         self._timeout = protocol.WORD.pack(round(settings.watchdog_s / protocol.TIMEOUT_STEP_S))
@@ -62,18 +64,6 @@ class RobstrideActuator(MitActuator):
     def question(self) -> Frame:
         """Its time-out, written as it is already: answered with feedback, and nothing changes."""
         return protocol.parameter_frame(Kind.WRITE, self._id, Parameter.TIMEOUT, self._timeout)
-
-    def enable_frame(self) -> Frame:
-        """Run."""
-        return protocol.frame(Kind.ENABLE, self._id)
-
-    def disable_frame(self) -> Frame:
-        """Stop."""
-        return protocol.frame(Kind.STOP, self._id)
-
-    def clear_frame(self) -> Frame:
-        """Stop, and clear its faults."""
-        return protocol.frame(Kind.STOP, self._id, b"\x01" + bytes(7))
 
     def addresses(self) -> str:
         """Its id."""

@@ -1,17 +1,18 @@
 """A servo on its bus: goals out, one piece of its table in, in one go."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from time import perf_counter
 from typing import TypeVar
 
+from drivers.actuator.actuator import OnSharedBus
 from drivers.actuator.reading import Reading
 from drivers.contract import Mode
 from drivers.servos.bus import ServoBus
 from drivers.servos.frames import Item
 
 
-class ServoActuator(ABC):
+class ServoActuator(OnSharedBus):
     """What the servos of every protocol do alike.
 
     Args:
@@ -58,17 +59,9 @@ class ServoActuator(ABC):
         """A goal of 0: a duty of 0 brakes, a current of 0 does not; a position is kept."""
         return (Mode.OFF if self._mode is Mode.POSITION else self._mode), 0.0
 
-    def ask(self) -> Reading:
-        """The piece alone."""
-        return self.exchange(Mode.OFF, 0.0)
-
     def shout_off(self) -> None:
         """Power off, and wait for no answer."""
         self.bus.shout(self.servo_id, self.torque_enable, 0)
-
-    def close(self) -> None:
-        """Give the port back, where nobody else uses it."""
-        self._leave()
 
     def _write_goal(self, mode: Mode, value: float) -> None:
         address, data = self.goal(mode, value)
