@@ -13,11 +13,11 @@ from bench.config.configuration import BenchConfiguration
 from bench.errors import BenchError
 from bench.runs.bench_control import PACES
 from bench.runs.queue.conductor import Conductor
-from bench.runs.queue.items import Order, checked_item
+from bench.runs.queue.items import checked_item
 from bench.store import Store
 from bench.store.errors import NotFoundError, StoreError, StoreStateError
 from bench.store.tables.lab_queue import TAKEN, LabItem, LabQueueTable, Taker
-from bench.store.tables.queue import RUNNING, WAITING, QueueItem
+from bench.store.tables.queue import RUNNING, WAITING, NewItem, QueueItem
 
 TAKEN_OUT = "taken out of the bench's own queue"
 
@@ -89,7 +89,7 @@ class LabWork:
         """The first one that this bench's own limits let pass; the others are declined, with the reason."""
         while (item := queue.take(self._taker)) is not None:
             pace = next((one for one in PACES if one == item.pace), None)
-            order = Order(item.kind, item.parameters, item.operator, item.note, item.tags, pace)
+            order = NewItem(item.kind, item.parameters, item.operator, item.note, item.tags, pace)
             try:
                 checked = checked_item(order, self._configuration)
             except StoreError:

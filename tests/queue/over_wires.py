@@ -14,11 +14,10 @@ from typing import Any
 
 from bench.runs.queue.campaign import Campaign, plan_campaign
 from bench.runs.queue.conductor import Conductor
-from bench.runs.queue.items import Order
 from bench.runs.queue.overview import queue_state
 from bench.runs.runner import Runner
 from bench.store import Store
-from bench.store.tables.queue import QueueItem
+from bench.store.tables.queue import NewItem, QueueItem
 from sim_backend.devices.canopen.drive import ServoDrive
 from sim_backend.devices.canopen.objects.generic import GENERIC
 from sim_backend.devices.joint_tables import behind_a_drive
@@ -71,7 +70,7 @@ def queued(name: str, store: Store) -> list[QueueItem]:
     with plugged_in(port), closing(Runner(on_bench(section), store)) as runner:
         conductor = Conductor(runner, store)
         conductor.begin()
-        conductor.add([Order(kind, parameters) for kind, parameters in SHORT.items()])
+        conductor.add([NewItem(kind, parameters) for kind, parameters in SHORT.items()])
         conductor.add_items(list(plan_campaign(CAMPAIGN, runner.configuration).items))
         while queue_state(conductor, runner).state not in ("idle", "held"):
             runner.wait(0.02)

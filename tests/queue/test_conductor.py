@@ -11,16 +11,16 @@ from bench.control.technician import PersonTechnician
 from bench.errors import BusyError, LimitError
 from bench.runs.lease import LeaseHeldError
 from bench.runs.queue.conductor import RESTARTED, Conductor
-from bench.runs.queue.items import Order
 from bench.runs.queue.overview import queue_state
 from bench.runs.runner import Runner
 from bench.store.errors import NotFoundError, StoreStateError
+from bench.store.tables.queue import NewItem
 from tests.control.fake_drive import FakeDrive
 from tests.queue.waiting import wait_for
 
 
 def steps(repeats=1, pace="fast", **more):
-    return Order("steps", {"repeats": repeats}, pace=pace, **more)
+    return NewItem("steps", {"repeats": repeats}, pace=pace, **more)
 
 
 SLOW = steps(3, "real-time")
@@ -31,7 +31,9 @@ def done(conductor):
 
 
 def test_items_are_run_one_after_the_other_in_order(conductor, runner, store):
-    conductor.add([steps(), Order("coast-down", {"speeds_rad_s": [1.0]}, "Ada", "first", ["b", "a"], "fast"), steps()])
+    conductor.add(
+        [steps(), NewItem("coast-down", {"speeds_rad_s": [1.0]}, "Ada", "first", ["b", "a"], "fast"), steps()]
+    )
     wait_for(lambda: done(conductor))
     assert conductor.held is None
     found = conductor.table.items()
@@ -45,7 +47,7 @@ def test_items_are_run_one_after_the_other_in_order(conductor, runner, store):
 
 def test_what_would_be_refused_is_not_taken_in(conductor):
     with pytest.raises(LimitError, match="load_kg is 5 kg"):
-        conductor.add([steps(), Order("steps", {"load_kg": 5.0})])
+        conductor.add([steps(), NewItem("steps", {"load_kg": 5.0})])
     assert conductor.table.items() == []
 
 
@@ -95,7 +97,7 @@ def test_a_trip_holds_the_queue_and_says_why(store):
     runner = Runner(plain.model_copy(update={"limits": plain.limits.model_copy(update={"speed_rad_s": 4.2})}), store)
     conductor = Conductor(runner, store)
     conductor.begin()
-    conductor.add([Order("steps", {"repeats": 1, "slowest_rad_s": 4.0}, pace="fast"), steps()])
+    conductor.add([NewItem("steps", {"repeats": 1, "slowest_rad_s": 4.0}, pace="fast"), steps()])
     wait_for(lambda: conductor.held is not None)
     found = conductor.table.items()
     assert found[0].state == "tripped"
@@ -288,7 +290,7 @@ def test_a_load_that_hangs_is_not_asked_for_again(runner, store, monkeypatch):
     conductor = Conductor(runner, store)
     conductor.begin()
     chirp = {"duration_s": 2.0, "amplitude_rad": 0.02, "high_hz": 2.0}
-    orders = [Order("chirp", {**chirp, "load_kg": load_kg}) for load_kg in (0.05, 0.05, 0.0)]
+    orders = [NewItem("chirp", {**chirp, "load_kg": load_kg}) for load_kg in (0.05, 0.05, 0.0)]
     conductor.add(orders)
     wait_for(lambda: done(conductor) or conductor.held)
     assert conductor.held is None

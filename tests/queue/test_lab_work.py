@@ -13,7 +13,6 @@ from bench.config.configuration import default_configuration
 from bench.runs.lab_work import TAKEN_OUT, LabWork
 from bench.runs.lease import Lease
 from bench.runs.queue.conductor import Conductor
-from bench.runs.queue.items import Order
 from bench.runs.runner import Runner
 from bench.store import Store
 from bench.store.errors import StoreUnreachableError
@@ -270,7 +269,7 @@ def test_a_bench_that_was_killed_says_what_became_of_what_it_had(lab, bench, tmp
 def test_what_is_asked_here_comes_first(lab, bench):
     one = bench()
     lab.lab_queue.add([SLOW])
-    one.conductor.add([Order("steps", {"repeats": 1}, pace="fast")])
+    one.conductor.add([NewItem("steps", {"repeats": 1}, pace="fast")])
     looks(lab, one)
     wait_for(lambda: one.store.experiments())
     time.sleep(0.05)

@@ -1,6 +1,6 @@
 """What is asked of the lab: families of items, and how each is drawn. The same seed draws the same items."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -97,18 +97,28 @@ def items_of(seed: int, plants: int, only: Sequence[str] = ()) -> list[Item]:
     Raises:
         ParameterError: no such family.
     """
+    return listed({name: family.per_plant for name, family in FAMILIES.items()}, seed, plants, only)
+
+
+def listed(
+    per_plant: Mapping[str, int],
+    seed: int,
+    plants: int,
+    only: Sequence[str],
+    prefix: str = "",
+    salt: tuple[int, ...] = (),
+) -> list[Item]:
+    """As `items_of`, by how many of each family there are for each plant; `salt` tells seeds of two plants apart."""
     for name in only:
-        if name not in FAMILIES:
-            raise ParameterError(f"there is no family '{name}' of items; known are {', '.join(FAMILIES)}")
+        if name not in per_plant:
+            raise ParameterError(f"there is no family '{name}' of items; known are {', '.join(per_plant)}")
     found = []
     for plant in range(plants):
-        for number, family in enumerate(FAMILIES.values()):
-            if only and family.name not in only:
-                continue
-            for repeat in range(family.per_plant):
-                drawn = np.random.SeedSequence((seed, plant, number, repeat)).generate_state(1)
-                turn = plant * family.per_plant + repeat
-                found.append(Item(f"{seed}-{plant}-{family.name}-{repeat}", family.name, int(drawn[0]), turn))
+        for number, (name, count) in enumerate(per_plant.items()):
+            for repeat in range(count if not only or name in only else 0):
+                drawn = np.random.SeedSequence((seed, plant, number, repeat, *salt)).generate_state(1)
+                key = f"{prefix}{seed}-{plant}-{name}-{repeat}"
+                found.append(Item(key, name, int(drawn[0]), plant * count + repeat))
     return found
 
 

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bench.errors import ParameterError
 from bench.evaluation.blind.baseline_methods import RIVALS
-from bench.evaluation.blind.items import Item
+from bench.evaluation.blind.items import Item, listed
 from bench.evaluation.blind.judge import ask_lab, can_be_seen, left_beside
 from bench.evaluation.blind.oracle import NEEDED
 from bench.evaluation.blind.recorded import base_fit
@@ -58,27 +57,9 @@ SECOND_FAMILIES: dict[str, SecondFamily] = {
 
 
 def second_items_of(seed: int, plants: int, only: Sequence[str] = ()) -> list[Item]:
-    """Every item of a run; a longer run begins with the items of a shorter one.
-
-    Args:
-        seed: of the run.
-        plants: rounds.
-        only: families that are asked; all where none is named.
-
-    Raises:
-        ParameterError: no such family.
-    """
-    for name in only:
-        if name not in SECOND_FAMILIES:
-            raise ParameterError(f"there is no family '{name}' of items; known are {', '.join(SECOND_FAMILIES)}")
-    found = []
-    for plant in range(plants):
-        for number, family in enumerate(SECOND_FAMILIES.values()):
-            for repeat in range(family.per_plant if not only or family.name in only else 0):
-                drawn = np.random.SeedSequence((seed, plant, number, repeat, 2)).generate_state(1)
-                turn = plant * family.per_plant + repeat
-                found.append(Item(f"second-{seed}-{plant}-{family.name}-{repeat}", family.name, int(drawn[0]), turn))
-    return found
+    """Every item of a run, as `items_of`."""
+    per_plant = {name: family.per_plant for name, family in SECOND_FAMILIES.items()}
+    return listed(per_plant, seed, plants, only, "second-", (2,))
 
 
 def draw_second(item: Item) -> SecondJoint:

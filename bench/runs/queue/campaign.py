@@ -15,7 +15,7 @@ from bench.control.drive_factory import has_hardware
 from bench.errors import ConfigurationError, ParameterError
 from bench.json_types import Json
 from bench.runs.bench_control import Pace
-from bench.runs.queue.items import HANG_S, Order, checked_item, fewest_changes, load_changes
+from bench.runs.queue.items import HANG_S, checked_item, fewest_changes, load_changes
 from bench.store.tables.queue import NewItem
 from bench.store.tables.tags import LONGEST_TAG, MOST_TAGS
 
@@ -114,7 +114,7 @@ def plan_campaign(campaign: Campaign, configuration: BenchConfiguration) -> Camp
 
 
 def _item(campaign: Campaign, chosen: Json, configuration: BenchConfiguration) -> NewItem:
-    order = Order(
+    order = NewItem(
         campaign.kind, {**campaign.parameters, **chosen}, campaign.operator, campaign.note, campaign.tags, campaign.pace
     )
     try:

@@ -8,7 +8,7 @@ from typing import cast
 from bench.errors import BenchError, BusyError
 from bench.runs.bench_control import BenchControl, Pace
 from bench.runs.lease import LeaseHeldError
-from bench.runs.queue.items import Order, checked_item
+from bench.runs.queue.items import checked_item
 from bench.store import Store
 from bench.store.errors import NotFoundError, StoreError, StoreStateError
 from bench.store.tables.queue import WAITING, NewItem, QueueItem, QueueTable
@@ -79,7 +79,7 @@ class Conductor:
         """Why nothing of the queue is started; None where it goes on."""
         return self._held
 
-    def add(self, orders: list[Order], by: str = "") -> list[int]:
+    def add(self, orders: list[NewItem], by: str = "") -> list[int]:
         """Take orders in, all or none. They start at once where the queue is neither held nor busy. Returns their ids.
 
         Raises:

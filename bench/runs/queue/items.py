@@ -1,13 +1,11 @@
 """Items of the queue: checked before they are taken in, as a start would be; and the order with the fewest loads."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import replace
 from itertools import groupby
 
 from bench.config.configuration import BenchConfiguration
 from bench.experiments.registry import find_kind, parse_parameters
-from bench.json_types import Json
-from bench.runs.bench_control import Pace
 from bench.store.tables.lab_queue import NewLabItem
 from bench.store.tables.queue import NewItem, QueueItem
 from bench.store.tables.tags import checked
@@ -15,26 +13,8 @@ from bench.store.tables.tags import checked
 HANG_S = 60.0  # what a person takes to hang a load, and to say so
 
 
-@dataclass(frozen=True, slots=True)
-class Order:
-    """What a user asks for.
-
-    Attributes:
-        kind, parameters: as `Runner.start` takes them.
-        operator, note, tags: given to the experiment.
-        pace: of the experiment; None: as a start without one.
-    """
-
-    kind: str
-    parameters: Json
-    operator: str = ""
-    note: str = ""
-    tags: list[str] = field(default_factory=list)
-    pace: Pace | None = None
-
-
-def checked_item(order: Order, configuration: BenchConfiguration) -> NewItem:
-    """An order as an item, with what it takes.
+def checked_item(order: NewItem, configuration: BenchConfiguration) -> NewItem:
+    """What a user asks for, with what it takes.
 
     Raises:
         UnknownKindError, ParameterError, LimitError, ConfigurationError: as a start would.
@@ -44,8 +24,9 @@ def checked_item(order: Order, configuration: BenchConfiguration) -> NewItem:
     parameters = parse_parameters(kind, order.parameters)
     kind.refuse(parameters, configuration)
     loads = [(plan.load_kg, plan.balanced) for plan in kind.plan(parameters, configuration)]
-    return NewItem(
-        **asdict(replace(order, tags=checked(order.tags))),
+    return replace(
+        order,
+        tags=checked(order.tags),
         duration_s=kind.duration_s(parameters, configuration),
         loads=[list(load) for load, _ in groupby(loads)],
     )

@@ -3,6 +3,8 @@
 Reading needs the drives to be opened, so it is a POST as well: nothing connects to a drive on GET.
 """
 
+from functools import partial
+
 from fastapi import Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -48,23 +50,16 @@ class ClearFault(BaseModel):
     fault: str = Field(description="`fault` as POST /drive/state told it", max_length=2000, examples=["over-current"])
 
 
-_ANSWERS = problems(401, 403, 409, 422, 502)
+ask = partial(router.post, dependencies=[Depends(require_lease)], responses=problems(401, 403, 409, 422, 502))
 
 
-@router.post(
-    "/state", summary="What the drives say of themselves", dependencies=[Depends(require_lease)], responses=_ANSWERS
-)
+@ask("/state", summary="What the drives say of themselves")
 async def state(runner: RunnerOf, request: Request) -> DriveStates:
     """Connects to them, with the power off; 409 while an experiment runs."""
     return _represent(await at_bench(request, runner.read_drives))
 
 
-@router.post(
-    "/clear-fault",
-    summary="Clear a fault that has been seen",
-    dependencies=[Depends(require_lease)],
-    responses=_ANSWERS,
-)
+@ask("/clear-fault", summary="Clear a fault that has been seen")
 async def clear_fault(runner: RunnerOf, request: Request, body: ClearFault) -> DriveStates:
     """The power stays off. 409 where the fault is another one by now, 502 where its cause is still there."""
     found = await at_bench(request, runner.clear_faults, body.fault)

@@ -1,11 +1,11 @@
 """/queue: experiments one after the other. /campaigns: many of them at once."""
 
+from functools import partial
 from typing import Annotated
 
 from fastapi import Depends, Path, Query, Request
 
 from bench.runs.queue.campaign import Campaign, CampaignPlan, plan_campaign
-from bench.runs.queue.items import Order
 from bench.runs.queue.overview import queue_state
 from bench.service.auth.access import Operator, allow_read, require_operator
 from bench.service.auth.audit_trail import note
@@ -26,10 +26,12 @@ from bench.service.routes.queue_models import (
     queue_of,
 )
 from bench.service.services import ConductorOf, RunnerOf, StoreOf
+from bench.store.tables.queue import NewItem
 
 router = api_router(tags=["queue"], dependencies=[Depends(allow_read)])
 ItemId = Annotated[int, Path(ge=1, le=2**31 - 1, description="number of the item")]
 HOLDER = [Depends(require_lease)]
+taken_in = partial(router.post, status_code=201, dependencies=HOLDER, responses=problems(401, 403, 404, 409, 422))
 
 
 @router.get("/queue", summary="What waits, what runs, how long it takes", responses=problems(422))
@@ -42,20 +44,14 @@ def queue(
     return queue_of(queue_state(conductor, runner), conductor.table.ended(ended))
 
 
-@router.post(
-    "/queue",
-    status_code=201,
-    summary="Add experiments: they start when it is their turn, at once where nothing is before them",
-    dependencies=HOLDER,
-    responses=problems(401, 403, 404, 409, 422),
-)
+@taken_in("/queue", summary="Add experiments: they start when it is their turn, at once where nothing is before them")
 def add(
     conductor: ConductorOf, store: StoreOf, request: Request, caller: Operator, body: NewQueueItems, key: Key = None
 ) -> Added:
     """All or none: one that would be refused refuses the request. While the queue is held they wait."""
 
     def take_in() -> Added:
-        orders = [Order(**one.model_dump()) for one in body.items]
+        orders = [NewItem(**one.model_dump()) for one in body.items]
         found = conductor.add(orders, by=caller.name)
         note(request, f"added {len(found)} to the queue")
         return Added(item_ids=found)
@@ -150,13 +146,7 @@ def plan(runner: RunnerOf, body: Campaign) -> Plan:
     return _answer(body.name, plan_campaign(body, runner.configuration))
 
 
-@router.post(
-    "/campaigns",
-    status_code=201,
-    summary="Put a campaign into the queue",
-    dependencies=HOLDER,
-    responses=problems(401, 403, 404, 409, 422),
-)
+@taken_in("/campaigns", summary="Put a campaign into the queue")
 def start(
     conductor: ConductorOf,
     runner: RunnerOf,

@@ -1,6 +1,7 @@
 """/calibrations/run: measure friction curves where they are known least, paused and gone on with."""
 
 import math
+from functools import partial
 from typing import Annotated, Literal
 
 from fastapi import Depends, Request
@@ -19,6 +20,7 @@ from bench.service.routes.leases import LeaseOf, require_lease
 from bench.service.services import CalibratorOf, ConductorOf
 
 router = api_router("/calibrations/run", tags=["calibrations"], dependencies=[Depends(allow_read)])
+steer = partial(router.post, dependencies=[Depends(require_lease)], responses=problems(401, 403, 409))
 Load = Annotated[float, Field(ge=0, le=50)]
 Duty = Annotated[float, Field(gt=0, le=1)]
 
@@ -93,12 +95,7 @@ async def begin(
     return _represent(calibrator)
 
 
-@router.post(
-    "/pause",
-    summary="Stand still after the trial that runs",
-    dependencies=[Depends(require_lease)],
-    responses=problems(401, 403, 409),
-)
+@steer("/pause", summary="Stand still after the trial that runs")
 def pause(calibrator: CalibratorOf, request: Request) -> Run:
     """With the power off. 409 where none is under way."""
     _require(calibrator)
@@ -107,12 +104,7 @@ def pause(calibrator: CalibratorOf, request: Request) -> Run:
     return _represent(calibrator)
 
 
-@router.post(
-    "/resume",
-    summary="Go on: the joint moves",
-    dependencies=[Depends(require_lease)],
-    responses=problems(401, 403, 409),
-)
+@steer("/resume", summary="Go on: the joint moves")
 def resume(calibrator: CalibratorOf, request: Request) -> Run:
     """409 where none is under way."""
     _require(calibrator)

@@ -7,7 +7,6 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from bench.errors import BusyError
 from bench.runs.queue.conductor import Conductor
-from bench.runs.queue.items import Order
 from bench.service.auth.access import Operator, allow_read
 from bench.service.auth.audit_trail import note
 from bench.service.compute import at_bench, in_lab
@@ -16,7 +15,7 @@ from bench.service.http.problems import problems
 from bench.service.http.repeated_start import Key, once
 from bench.service.routes.leases import require_lease
 from bench.service.services import ConductorOf, RunnerOf, StoreOf
-from bench.store.tables.queue import RUNNING, WAITING
+from bench.store.tables.queue import RUNNING, WAITING, NewItem
 from bench.study.models.study import note_for
 from bench.study.suggestion.suggested import NextRound
 
@@ -68,7 +67,7 @@ async def begin_round(
     def take_in() -> Round:
         _refuse_while_recording(conductor, study_id)
         suggested = found.suggested
-        orders = [Order(one.kind, one.parameters, note=suggested.note) for one in suggested.trials]
+        orders = [NewItem(one.kind, one.parameters, note=suggested.note) for one in suggested.trials]
         item_ids = conductor.add(orders, by=caller.name) if orders else []
         note(request, f"queued {len(item_ids)} trials that study {study_id} asks for")
         return Round(extended=found.extended, suggested=suggested, item_ids=item_ids)
