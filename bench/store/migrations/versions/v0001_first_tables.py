@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0001"
 down_revision = None
-branch_labels = None
-depends_on = None
 
 TIME = sa.DateTime(timezone=True)
 
@@ -17,12 +15,6 @@ def upgrade() -> None:
     _trials()
     _samples()
     _studies()
-
-
-def downgrade() -> None:
-    """Remove all tables."""
-    for table in ("model", "study", "event", "sample_block", "trial_condition", "trial", "experiment"):
-        op.drop_table(table)
 
 
 def _experiments() -> None:

@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0002"
 down_revision = "0001"
-branch_labels = None
-depends_on = None
 
 TIME = sa.DateTime(timezone=True)
 
@@ -28,8 +26,3 @@ def upgrade() -> None:
         sa.Column("chosen_utc", TIME),
         sa.PrimaryKeyConstraint("id", name="pk_calibration"),
     )
-
-
-def downgrade() -> None:
-    """Remove it."""
-    op.drop_table("calibration")

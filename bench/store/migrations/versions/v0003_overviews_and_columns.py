@@ -8,8 +8,6 @@ from alembic import op
 
 revision = "0003"
 down_revision = "0002"
-branch_labels = None
-depends_on = None
 
 FACTS = {
     "bench": ("configuration", "name"),
@@ -71,17 +69,6 @@ def upgrade() -> None:
         _index_instead(table, before, after)
     op.execute(EXPERIMENT_VIEW)
     op.execute(TRIAL_VIEW.format(numbers=",\n       ".join(NUMBER.format(key=key) for key in NUMBERS)))
-
-
-def downgrade() -> None:
-    """Remove them."""
-    for view in ("trial_view", "experiment_view"):
-        op.execute(f"DROP VIEW {view}")
-    for table, (before, after) in INDEXES.items():
-        _index_instead(table, after, before)
-    op.drop_table("sample_overview")
-    for name in ("seed", *FACTS):
-        op.drop_column("experiment", name)
 
 
 def _index_instead(table: str, before: tuple[tuple[str, ...], ...], after: tuple[tuple[str, ...], ...]) -> None:

@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0005"
 down_revision = "0003"
-branch_labels = None
-depends_on = None
 
 MOMENT = sa.DateTime(timezone=True)
 
@@ -46,9 +44,3 @@ def upgrade() -> None:
         sa.UniqueConstraint("token", "key", name="uq_start_key_token_key"),
     )
     op.create_index("ix_start_key_created_utc", "start_key", ["created_utc"])
-
-
-def downgrade() -> None:
-    """Remove them."""
-    for table in ("start_key", "audit", "access_token"):
-        op.drop_table(table)

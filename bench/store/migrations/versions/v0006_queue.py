@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0006"
 down_revision = "0005"
-branch_labels = None
-depends_on = None
 
 TIME = sa.DateTime(timezone=True)
 
@@ -66,9 +64,3 @@ def upgrade() -> None:
         ),
     )
     op.create_index("ix_experiment_tag_tag_experiment_id", "experiment_tag", ["tag", "experiment_id"])
-
-
-def downgrade() -> None:
-    """Remove them."""
-    for table in ("experiment_tag", "queue_state", "queue_item", "campaign"):
-        op.drop_table(table)

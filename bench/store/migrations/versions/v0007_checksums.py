@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0007"
 down_revision = "0006"
-branch_labels = None
-depends_on = None
 TABLES = ("sample_block", "sample_overview")
 
 
@@ -14,9 +12,3 @@ def upgrade() -> None:
     """Add the columns."""
     for table in TABLES:
         op.add_column(table, sa.Column("crc32", sa.BigInteger, nullable=True))
-
-
-def downgrade() -> None:
-    """Remove them."""
-    for table in TABLES:
-        op.drop_column(table, "crc32")

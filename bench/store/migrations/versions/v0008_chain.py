@@ -8,8 +8,6 @@ from alembic import op
 
 revision = "0008"
 down_revision = "0007"
-branch_labels = None
-depends_on = None
 SUBJECTS = ("experiment", "trial", "study", "model", "calibration", "access_token", "audit")
 
 
@@ -35,8 +33,3 @@ def upgrade() -> None:
         link = sha256("\n".join(map(str, (link, number, at, subject, last, "older", ""))).encode()).hexdigest()
         row = {"id": number, "at_utc": moment, "subject": subject, "row_id": last, "state": "older", "digest": ""}
         connection.execute(sa.insert(chain).values(**row, link=link))
-
-
-def downgrade() -> None:
-    """Remove it."""
-    op.drop_table("chain")

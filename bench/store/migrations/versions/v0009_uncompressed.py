@@ -4,22 +4,11 @@ from alembic import op
 
 revision = "0009"
 down_revision = "0008"
-branch_labels = None
-depends_on = None
 TABLES = ("sample_block", "sample_overview")
 
 
 def upgrade() -> None:
     """What is there already stays as it is; SQLite compresses nothing."""
-    _store("EXTERNAL")
-
-
-def downgrade() -> None:
-    """Back to the server's default."""
-    _store("EXTENDED")
-
-
-def _store(kind: str) -> None:
     if op.get_bind().dialect.name == "postgresql":
         for table in TABLES:
-            op.execute(f"ALTER TABLE {table} ALTER COLUMN data SET STORAGE {kind}")
+            op.execute(f"ALTER TABLE {table} ALTER COLUMN data SET STORAGE EXTERNAL")

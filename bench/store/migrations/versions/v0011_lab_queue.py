@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0011"
 down_revision = "0010"
-branch_labels = None
-depends_on = None
 
 TIME = sa.DateTime(timezone=True)
 WORDS = ("kind", "operator", "note", "asked_by", "for_bench", "for_rig", "state", "reason", "bench", "claim")
@@ -28,9 +26,3 @@ def upgrade() -> None:
     )
     op.create_index("ix_lab_item_state", "lab_item", ["state"])
     op.add_column("queue_item", sa.Column("lab_claim", sa.Text))
-
-
-def downgrade() -> None:
-    """Remove them."""
-    op.drop_column("queue_item", "lab_claim")
-    op.drop_table("lab_item")
