@@ -246,6 +246,7 @@ class Device(Protocol):
 
     def advance_to(self, time_s: float) -> None:
         """Let time pass up to a time [s] of the axis."""
+        self.axis.advance_to(time_s)
 
     def report(self) -> dict[str, object]:
         """What the drive is about, for the side channel: its state, its watchdog, its fault."""

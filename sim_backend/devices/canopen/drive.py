@@ -3,7 +3,7 @@
 from threading import RLock
 
 from drivers.contract import Sample
-from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand
+from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand, Device
 from sim_backend.devices.can.frame import Frame
 from sim_backend.devices.canopen.abort import Abort, AbortCode
 from sim_backend.devices.canopen.conduct import GOOD, REACTIONS, Conduct
@@ -42,7 +42,7 @@ _CODES: dict[type[Trip], ErrorCode] = {
 }
 
 
-class ServoDrive:
+class ServoDrive(Device):
     """One drive on a CAN bus.
 
     Args:
@@ -107,10 +107,6 @@ class ServoDrive:
         self.node.on_lost = self._lose_master
 
     # what the threads around it call ------------------------------------------------------------------
-
-    def advance_to(self, time_s: float) -> None:
-        """Let time pass."""
-        self.axis.advance_to(time_s)
 
     def receive(self, frame: Frame, time_s: float) -> None:
         """Take a frame from the bus at a time [s]; answers go out through `node.send`."""

@@ -5,7 +5,7 @@ from threading import RLock
 from typing import NamedTuple
 
 from drivers.contract import Sample
-from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand
+from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand, Device
 from sim_backend.devices.can.frame import Frame, QuietNode
 from sim_backend.faults.script import Trip
 from sim_backend.plant.parameters import PlantParameters
@@ -21,7 +21,7 @@ class Command(NamedTuple):
     torque_n_m: float = 0.0
 
 
-class MitMotor(ABC):
+class MitMotor(Device, ABC):
     """An actuator whose output is the motor's side of the joint.
 
     Args:
@@ -65,10 +65,6 @@ class MitMotor(ABC):
         """Note that nobody has talked to it for too long."""
 
     # what the threads around it call ------------------------------------------------------------------
-
-    def advance_to(self, time_s: float) -> None:
-        """Let time pass."""
-        self.axis.advance_to(time_s)
 
     def receive(self, frame: Frame, time_s: float) -> None:  # noqa: ARG002
         """Take a frame from the bus."""

@@ -5,7 +5,7 @@ from enum import IntEnum
 from threading import RLock
 
 from drivers.contract import Sample
-from sim_backend.devices.axis import BRAKE, CURRENT, OFF, VOLTAGE, Axis, Demand
+from sim_backend.devices.axis import BRAKE, CURRENT, OFF, VOLTAGE, Axis, Demand, Device
 from sim_backend.devices.modbus.own_map import COMMAND_BLOCK, DEFAULTS, REGISTERS, identity
 from sim_backend.devices.modbus.register_file import ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refused, RegisterFile
 from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
@@ -52,7 +52,7 @@ _FAULTS: dict[type[Trip], Fault] = {
 _LIMITED, _DISABLED, _WARM = 1 << 3, 1 << 4, 1 << 5
 
 
-class OwnDrive:
+class OwnDrive(Device):
     """One drive.
 
     Args:
@@ -72,10 +72,6 @@ class OwnDrive:
         self._file = RegisterFile(REGISTERS, self._value, lambda: self._kept["word_order"] == 1)
         self.axis = Axis(parameters, self, seed)
         self._live = self._make_live()
-
-    def advance_to(self, time_s: float) -> None:
-        """Let time pass."""
-        self.axis.advance_to(time_s)
 
     def report(self) -> dict[str, object]:
         """Say what the drive is about."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from threading import RLock
 
 from drivers.contract import Sample
-from sim_backend.devices.axis import OFF, VOLTAGE, Axis, Demand
+from sim_backend.devices.axis import OFF, VOLTAGE, Axis, Demand, Device
 from sim_backend.devices.modbus.register_file import (
     ILLEGAL_ADDRESS,
     ILLEGAL_FUNCTION,
@@ -26,7 +26,7 @@ _SET_VARIABLE, _VARIABLE = 0x00A0, 0x20C0
 _OVERHEAT, _UNDER_VOLTAGE, _SHORT, _EMERGENCY = 1, 4, 8, 16
 
 
-class Roboteq:
+class Roboteq(Device):
     """Channel 1 of a controller, in open loop.
 
     Args:
@@ -45,10 +45,6 @@ class Roboteq:
         self._variables = dict.fromkeys(_VARIABLES, 0)
         self._turn_counts = parameters.encoder.counts_per_turn
         self._queries = self._make_queries()
-
-    def advance_to(self, time_s: float) -> None:
-        """Let time pass."""
-        self.axis.advance_to(time_s)
 
     def report(self) -> dict[str, object]:
         """Say what the drive is about."""

@@ -6,7 +6,7 @@ from struct import pack
 from threading import RLock
 
 from drivers.contract import Sample
-from sim_backend.devices.axis import OFF, TICK_S, VOLTAGE, Axis, Demand
+from sim_backend.devices.axis import OFF, TICK_S, VOLTAGE, Axis, Demand, Device
 from sim_backend.devices.roboclaw.channel import FULL_DUTY, Channel, Counter
 from sim_backend.devices.roboclaw.commands import ACKNOWLEDGED, COMMANDS
 from sim_backend.devices.roboclaw.handlers import handlers_of
@@ -23,7 +23,7 @@ _SPEED_SHARE = 1.0 - exp(-TICK_S / _SPEED_LAG_S)
 Values = tuple[int, ...]
 
 
-class RoboClaw:
+class RoboClaw(Device):
     """One device on a serial line.
 
     Args:
@@ -48,10 +48,6 @@ class RoboClaw:
         self._handlers = handlers_of(self)
 
     # what the threads around it call -----------------------------------------------------------------
-
-    def advance_to(self, time_s: float) -> None:
-        """Let time pass."""
-        self.axis.advance_to(time_s)
 
     def connect(self) -> None:
         """Forget half a packet."""
