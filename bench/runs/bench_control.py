@@ -19,6 +19,7 @@ from drivers.contract import Description
 Pace = Literal["real-time", "fast"]
 Pausing = Literal["", "asked", "paused"]
 PACES: tuple[Pace, ...] = ("real-time", "fast")
+FAILED_POWER_OFF = ("power-off failed", "quick stop failed")  # notes of `bench.control.loop` in the reason of a run
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +72,13 @@ class RunnerStatus:
     prompt: Prompt | None = None
     pausing: Pausing = ""
     duration_s: float = 0.0
+
+    @property
+    def power_off(self) -> Literal["confirmed", "failed"] | None:
+        """Whether the drive took its power off at the end, as the control loop noted it; None while it runs."""
+        if self.outcome == "running":
+            return None
+        return "failed" if any(note in self.reason for note in FAILED_POWER_OFF) else "confirmed"
 
     @property
     def left_s(self) -> float:

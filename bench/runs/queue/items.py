@@ -7,7 +7,7 @@ from itertools import groupby
 from bench.config.configuration import BenchConfiguration
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.store.tables.lab_queue import NewLabItem
-from bench.store.tables.queue import NewItem, QueueItem
+from bench.store.tables.queue import NewItem
 from bench.store.tables.tags import checked
 
 HANG_S = 60.0  # what a person takes to hang a load, and to say so
@@ -43,7 +43,7 @@ def known_item(item: NewLabItem) -> NewLabItem:
     return replace(item, tags=checked(item.tags), for_tags=checked(item.for_tags))
 
 
-def load_changes(items: Sequence[NewItem | QueueItem]) -> int:
+def load_changes(items: Sequence[NewItem]) -> int:
     """How often something else has to be hung, the first load included."""
     loads = [load for item in items for load in item.loads]
     return sum(one != before for before, one in zip([None, *loads], loads, strict=False))

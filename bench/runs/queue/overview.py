@@ -25,6 +25,7 @@ class QueueState:
         duration_s: estimate of all of them, in the joint's time, hanging of loads included.
         left_s: what is left of that.
         load_changes: how often something has to be hung yet.
+        ended: what came out last, newest first.
     """
 
     state: State
@@ -34,10 +35,11 @@ class QueueState:
     duration_s: float
     left_s: float
     load_changes: int
+    ended: list[QueueItem]
 
 
-def queue_state(conductor: Conductor, runner: BenchControl) -> QueueState:
-    """The queue of a bench, now."""
+def queue_state(conductor: Conductor, runner: BenchControl, ended: int = 0) -> QueueState:
+    """The queue of a bench, now; with so many of the items that came out of it."""
     waiting = conductor.table.items(WAITING)
     running, status = conductor.running, runner.status()
     waiting = [item for item in waiting if running is None or item.id != running.id]
@@ -53,4 +55,5 @@ def queue_state(conductor: Conductor, runner: BenchControl) -> QueueState:
         state = "running" if waiting else "idle"
     duration_s = coming_s + (running.duration_s if running else 0.0)
     left_s = coming_s + (status.left_s if running else 0.0)
-    return QueueState(state, held or "", running, waiting, duration_s, left_s, changes)
+    out = conductor.table.ended(ended) if ended else []
+    return QueueState(state, held or "", running, waiting, duration_s, left_s, changes, out)

@@ -3,7 +3,7 @@
 from math import isfinite
 from typing import Literal
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, ConfigDict, Field
 
 from bench.control.cycle import Reading
 from bench.json_types import Number
@@ -34,12 +34,10 @@ def rows_of(found: LiveRows) -> Rows:
     )
 
 
-FAILED_POWER_OFF = ("power-off failed", "quick stop failed")  # notes of `bench.control.loop` in the reason of a run
-
-
 class Run(BaseModel):
     """The experiment that runs, or the last one."""
 
+    model_config = ConfigDict(from_attributes=True)
     experiment_id: int | None
     kind: str
     outcome: str = Field(description="running, completed, stopped, tripped, failed, interrupted or refused")
@@ -95,26 +93,10 @@ def status_of(found: RunnerStatus, simulated: bool, lease: LeaseNow | None) -> S
     return Status(
         state="running" if found.outcome == "running" else "idle",
         simulated=simulated,
-        run=_run(found) if found.kind else None,
+        run=Run.model_validate(found) if found.kind else None,
         reading=None if found.reading is None else _reading(found.reading, _power(found, found.reading)),
         prompt=None if found.prompt is None else PromptNow(number=found.prompt.number, sentence=found.prompt.sentence),
         lease=lease,
-    )
-
-
-def _run(found: RunnerStatus) -> Run:
-    return Run(
-        experiment_id=found.experiment_id,
-        kind=found.kind,
-        outcome=found.outcome,
-        reason=found.reason,
-        trial_index=found.trial_index,
-        trial_count=found.trial_count,
-        progress=found.progress,
-        duration_s=found.duration_s,
-        left_s=found.left_s,
-        pausing=found.pausing,
-        power_off=None if found.outcome == "running" else _power_off(found),
     )
 
 
@@ -124,12 +106,7 @@ def _power(found: RunnerStatus, reading: Reading) -> str:
         return "disabled"
     if found.outcome == "running":
         return reading.sample.status.name.lower()
-    return "disabled" if _power_off(found) == "confirmed" else "unknown"
-
-
-def _power_off(found: RunnerStatus) -> Literal["confirmed", "failed"]:
-    """What the control loop noted of the power-off that ends every run."""
-    return "failed" if any(note in found.reason for note in FAILED_POWER_OFF) else "confirmed"
+    return "disabled" if found.power_off == "confirmed" else "unknown"
 
 
 def _reading(reading: Reading, power: str) -> ReadingNow:

@@ -23,7 +23,6 @@ from bench.service.routes.queue_models import (
     Queue,
     StartedCampaign,
     planned,
-    queue_of,
 )
 from bench.service.services import ConductorOf, RunnerOf, StoreOf
 from bench.store.tables.queue import NewItem
@@ -41,7 +40,7 @@ def queue(
     ended: Annotated[int, Query(ge=0, le=1000, description="how many that came out of the queue")] = 10,
 ) -> Queue:
     """Reading this never moves anything."""
-    return queue_of(queue_state(conductor, runner), conductor.table.ended(ended))
+    return Queue.model_validate(queue_state(conductor, runner, ended))
 
 
 @taken_in("/queue", summary="Add experiments: they start when it is their turn, at once where nothing is before them")
@@ -119,7 +118,7 @@ def pause(conductor: ConductorOf, runner: RunnerOf, request: Request, caller: Op
     """The power is off meanwhile. Whoever has the bench: standing still is no harm."""
     conductor.pause(f"paused by {caller.name}")
     note(request, "paused the queue")
-    return queue_of(queue_state(conductor, runner), [])
+    return Queue.model_validate(queue_state(conductor, runner))
 
 
 @router.post(
@@ -132,7 +131,7 @@ def resume(conductor: ConductorOf, runner: RunnerOf, request: Request, caller: O
     """After a pause, after a stop or a failure, and after a start of the service. Look at the bench first."""
     conductor.resume(caller.name)
     note(request, "resumed the queue")
-    return queue_of(queue_state(conductor, runner), [])
+    return Queue.model_validate(queue_state(conductor, runner))
 
 
 @router.post(

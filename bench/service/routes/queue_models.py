@@ -9,9 +9,8 @@ from bench.config.validation import problems
 from bench.experiments.registry import find_kind
 from bench.json_types import Json
 from bench.runs.queue.campaign import MOST_ITEMS
-from bench.runs.queue.overview import QueueState
 from bench.service.http.problems import InvalidFieldsError, field_problems
-from bench.store.tables.queue import NewItem, QueueItem
+from bench.store.tables.queue import NewItem
 from bench.store.tables.tags import LONGEST_TAG, MOST_TAGS
 
 Tag = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=LONGEST_TAG)]
@@ -104,6 +103,7 @@ class Item(BaseModel):
 class Queue(BaseModel):
     """The queue of the bench."""
 
+    model_config = ConfigDict(from_attributes=True)
     state: Literal["idle", "running", "pausing", "paused", "held"] = Field(
         description="held: nothing is started until somebody resumes; pausing: it stands still after its present trial"
     )
@@ -150,20 +150,6 @@ class StartedCampaign(Plan):
     """A campaign in the queue."""
 
     item_ids: list[int]
-
-
-def queue_of(found: QueueState, ended: list[QueueItem]) -> Queue:
-    """The queue as it is answered."""
-    return Queue(
-        state=found.state,
-        reason=found.reason,
-        running=None if found.running is None else Item.model_validate(found.running),
-        waiting=[Item.model_validate(item) for item in found.waiting],
-        duration_s=found.duration_s,
-        left_s=found.left_s,
-        load_changes=found.load_changes,
-        ended=[Item.model_validate(item) for item in ended],
-    )
 
 
 def planned(item: NewItem) -> PlannedItem:

@@ -64,8 +64,8 @@ class Taker:
         return asked and self.tags.issuperset(item.for_tags) and self.name not in item.declined
 
 
-@dataclass(frozen=True, slots=True)
-class LabItem:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LabItem(NewLabItem):
     """An item of the laboratory's queue, or one that came out of it.
 
     Attributes:
@@ -77,20 +77,9 @@ class LabItem:
         declined: by bench, why it does not take it.
         silent_s: since its bench last said that it has it [s]; None where none has.
         experiment_id: of the experiment in the laboratory, once it is handed in.
-        others: see `NewLabItem`.
     """
 
     id: int
-    kind: str
-    parameters: Json
-    operator: str
-    note: str
-    tags: list[str]
-    pace: str | None
-    asked_by: str
-    for_bench: str
-    for_rig: str
-    for_tags: list[str]
     state: str
     reason: str
     bench: str

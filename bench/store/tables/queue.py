@@ -42,8 +42,8 @@ class NewItem:
     lab_claim: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class QueueItem:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class QueueItem(NewItem):
     """An experiment in the queue, or one that came out of it.
 
     Attributes:
@@ -52,25 +52,15 @@ class QueueItem:
         state: "waiting", "running", or the outcome of its experiment.
         reason: why it ended.
         experiment_id: of its record, once there is one.
-        others: see `NewItem`.
     """
 
     id: int
     campaign_id: int | None
-    kind: str
-    parameters: Json
-    operator: str
-    note: str
-    tags: list[str]
-    pace: str | None
-    duration_s: float
-    loads: list[list[Any]]
     state: str
     reason: str
     experiment_id: int | None
     created_utc: datetime
     finished_utc: datetime | None
-    lab_claim: str | None
 
 
 COLUMNS = tuple(ITEM[name] for name in QueueItem.__dataclass_fields__)
