@@ -3,7 +3,7 @@
 import zlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from numba import njit
 
@@ -29,8 +29,16 @@ def compiled_and_kept(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def _made(function: Callable[P, R], kept: bool) -> Callable[P, R]:
-    lean = {"no_cpython_wrapper": not kept, "no_cfunc_wrapper": True, "no_rewrites": True}
-    made: Callable[P, R] = njit(cache=kept, error_model="numpy", fastmath={"contract", "arcp"}, **lean)(function)
+    lean: Any = njit  # numba knows these options, its type hints do not
+    made: Callable[P, R] = lean(
+        function,
+        cache=kept,
+        error_model="numpy",
+        fastmath={"contract", "arcp"},
+        no_cpython_wrapper=not kept,
+        no_cfunc_wrapper=True,
+        no_rewrites=True,
+    )
     return made
 
 
