@@ -3,7 +3,7 @@
 import zlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from numba import njit
 
@@ -12,7 +12,10 @@ R = TypeVar("R")
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile at the first call, into what calls it."""
+    """Compile at the first call, into what calls it. It cannot be called from Python.
+
+    Without a wrapper for Python around each function, the plant is compiled in half the time.
+    """
     return _made(function, kept=False)
 
 
@@ -26,7 +29,16 @@ def compiled_and_kept(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def _made(function: Callable[P, R], kept: bool) -> Callable[P, R]:
-    made: Callable[P, R] = njit(cache=kept, error_model="numpy", fastmath={"contract", "arcp"})(function)
+    lean: Any = njit  # numba knows these options, its type hints do not
+    made: Callable[P, R] = lean(
+        function,
+        cache=kept,
+        error_model="numpy",
+        fastmath={"contract", "arcp"},
+        no_cpython_wrapper=not kept,
+        no_cfunc_wrapper=True,
+        no_rewrites=True,
+    )
     return made
 
 

@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 from scipy.special import ellipk
 
+from sim_backend.second_plant import friction
 from sim_backend.second_plant.controller import CLOSED
-from sim_backend.second_plant.friction import load_loss_n_m
 from sim_backend.second_plant.physics import Physics
 from sim_backend.second_plant.simulate import TICK_S, Plan, Traces, run
 from tests.second_plant.bench import CONTROL, PLAIN, open_loop, seconds
+from tests.sim_backend.compiled import callable_from_python
 
+load_loss_n_m = callable_from_python(friction.load_loss_n_m)
 INERTIA = PLAIN.rotor_kg_m2 + PLAIN.arm_kg_m2
 
 

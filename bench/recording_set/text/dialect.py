@@ -8,6 +8,7 @@ import csv
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from bench.recording_set.units import unit_named
 
@@ -57,6 +58,12 @@ def dialect_of(lines: Sequence[str], delimiter: str | None = None, decimal: str 
         delimiter: where it is known.
         decimal: where it is known.
     """
+    return _found(tuple(lines), delimiter, decimal)
+
+
+# a file is read for its sheets, for the guess and for its recordings, and each time it is told anew how it is written
+@lru_cache(64)
+def _found(lines: tuple[str, ...], delimiter: str | None, decimal: str | None) -> Dialect | None:
     best, score = None, (0.0, 0.0)
     for sign in DELIMITERS if delimiter is None else (delimiter,):
         rows = [_cells(line, sign) for line in lines]
