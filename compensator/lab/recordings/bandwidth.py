@@ -2,23 +2,24 @@
 
 Effort and the plainest columns (acceleration, velocity, its sign, position, sin q, and those that grow with the load)
 are split into bands; in each the share of the effort that the columns explain is a multiple coherence. What the
-columns lack lowers it in every band; noise, of the encoder after differentiation or of the effort itself, grows with
-the frequency. Beyond the band where it falls below half of what it was further down there is mostly noise.
+columns lack lowers it in every band; noise grows with the frequency beside the effort. Beyond the band where it falls
+below half of what it was further down there is mostly noise. What noise of the position does, no coherence tells
+(`position_noise`).
 """
 
 from collections.abc import Sequence
-from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt, welch
+from scipy.signal import welch
 
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.facts import Effort, Facts
-from compensator.lab.recordings.low_pass import low_pass
 from compensator.lab.recordings.place_locked import place_locked_hz
-from compensator.lab.recordings.processing import Signals, lowest_cutoff_hz, make_signals, sample_rate_hz
-from compensator.lab.recordings.recording import FloatArray, Recording
+from compensator.lab.recordings.plain_columns import explained_share, long_enough
+from compensator.lab.recordings.position_noise import position_noise, position_noise_corner_hz
+from compensator.lab.recordings.processing import lowest_cutoff_hz, make_signals, sample_rate_hz
+from compensator.lab.recordings.recording import Recording
 
 COHERENT = 0.5  # of the highest coherence further down
 LEAST_COHERENCE = 0.1  # less is no motion's
@@ -34,9 +35,9 @@ MOST_RECORDINGS = 24  # enough to see a corner; keeps the cost bounded
 def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts) -> float:
     """The final low-pass cut-off [Hz].
 
-    Four times the motion's bandwidth, where the harmonics of a friction that changes sign still are, at most the noise
-    corner; higher where the effort repeats with the place of the joint; so high that half of the longest recording is
-    left between the edges of the filter; within 2 Hz and a fifth of the sample rate.
+    Four times the motion's bandwidth, where the harmonics of a friction that changes sign still are, at most the corner
+    of either noise; higher where the effort repeats with the place of the joint; so high that half of the longest
+    recording is left between the edges of the filter; within 2 Hz and a fifth of the sample rate.
 
     Raises:
         UnusableDataError: a recording with fewer than four samples a second, or one that `make_signals` refuses.
@@ -49,23 +50,25 @@ def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Fac
         )
     some = recordings[:: -(-len(recordings) // MOST_RECORDINGS)]
     highest_hz = 0.2 * slowest_hz
-    some = _long_enough(some, highest_hz) or some  # all, if none is, for the error to be raised
-    wanted_hz = min(HARMONICS * motion_bandwidth_hz(some, effort, facts, highest_hz), highest_hz)
-    by_motion_hz = noise_corner_hz(some, effort, facts, wanted_hz)
+    some = long_enough(some, highest_hz) or some  # all, if none is, for the error to be raised
+    motion_hz = motion_bandwidth_hz(some, effort, facts, highest_hz)
+    by_position_hz = position_noise_corner_hz(some, effort, facts, max(motion_hz, LOWEST_HZ))
+    by_motion_hz = noise_corner_hz(some, effort, facts, min(HARMONICS * motion_hz, by_position_hz, highest_hz))
     by_place_hz = min(PASSED * place_locked_hz(some, effort, facts), highest_hz)
     by_length_hz = min(2.0 * min(map(lowest_cutoff_hz, recordings)), highest_hz)
     return max(by_motion_hz, by_place_hz, by_length_hz, LOWEST_HZ)
 
 
 def motion_bandwidth_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, highest_hz: float) -> float:
-    """The frequency below which lies 99 % of the velocity's power, over all recordings [Hz]."""
+    """The frequency below which lies 99 % of the velocity's power, noise taken off, over all recordings [Hz]."""
     frequencies = np.linspace(0.0, 3.0 * highest_hz, 1024)
     power = np.zeros(len(frequencies))
     for recording in recordings:
         signals = make_signals(recording, effort, facts, highest_hz)
         segment = min(len(signals.velocity), int(SEGMENT_S * signals.rate_hz))
         at, density = welch(signals.velocity, signals.rate_hz, nperseg=segment)
-        power += np.interp(frequencies, at, density, right=0.0)
+        noise = position_noise(recording, facts) * (2.0 * np.pi * at) ** 2
+        power += np.interp(frequencies, at, np.maximum(density - noise, 0.0), right=0.0)
     share = np.cumsum(power) / max(float(power.sum()), np.finfo(float).tiny)
     return float(frequencies[min(int(np.searchsorted(share, MOTION_SHARE)), len(frequencies) - 1)])
 
@@ -77,61 +80,11 @@ def noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Fact
     # the last band takes in what is left: a sliver would hold too few values
     edges = np.append(edges[edges < 2.0 ** (-0.5 / BANDS_PER_OCTAVE) * highest_hz], max(highest_hz, LOWEST_HZ))
     for low, high in pairwise(edges.tolist()):
-        signals = [make_signals(one, effort, facts, high) for one in _long_enough(recordings, high)]
+        signals = [make_signals(one, effort, facts, high) for one in long_enough(recordings, high)]
         if not signals:
             continue
-        share = _explained_share(signals, low, high)
+        share = explained_share(signals, low, high)
         if share < max(COHERENT * most, LEAST_COHERENCE):
             return known_to_hz
         most, known_to_hz = max(most, share), high
     return known_to_hz
-
-
-def _long_enough(recordings: Sequence[Recording], cutoff_hz: float) -> Sequence[Recording]:
-    """Those that can be filtered so low.
-
-    A quick start from rest is over in two seconds: beside longer motion it has no say in what is noise.
-    """
-    return [recording for recording in recordings if lowest_cutoff_hz(recording) <= cutoff_hz]
-
-
-def _explained_share(trials: Sequence[Signals], low_hz: float, high_hz: float) -> float:
-    """Multiple coherence in a band, less what so many columns explain by chance (Bendat, Piersol 2010).
-
-    Chance is not taken off where a band holds hardly more independent values than there are columns.
-    """
-    stacks = [_band(trial, low_hz, high_hz) for trial in trials]
-    columns = np.concatenate([stack[:-1] for stack in stacks], axis=1).T
-    effort = np.concatenate([stack[-1] for stack in stacks])
-    count, power = columns.shape[1], float(effort @ effort)
-    if len(effort) <= count or power <= 0.0:
-        return 0.0
-    scale = np.linalg.norm(columns, axis=0)
-    columns = columns / np.where(scale > 0, scale, 1.0)
-    rest = effort - columns @ np.linalg.lstsq(columns, effort, rcond=1e-9)[0]
-    length_s = sum(stack.shape[1] / trial.rate_hz for stack, trial in zip(stacks, trials, strict=True))
-    free = 2.0 * (high_hz - low_hz) * length_s
-    by_chance = free / (free - count) if free > 2.0 * count else 1.0
-    return 1.0 - by_chance * float(rest @ rest) / power
-
-
-def _band(trial: Signals, low_hz: float, high_hz: float) -> FloatArray:
-    position = low_pass(trial.position, high_hz, trial.rate_hz)
-    speed = max(1e-12, 0.02 * float(np.quantile(np.abs(trial.velocity), 0.95)))
-    load = trial.recording.conditions.get("load_kg", 0.0)
-    load_kg = float(load) if isinstance(load, int | float) else 0.0
-    direction, sine = np.tanh(trial.velocity / speed), np.sin(position)
-    plain = [trial.acceleration, trial.velocity, direction, position, sine]
-    with_load = [load_kg * column for column in (trial.acceleration, direction, sine)]
-    stack = np.array([*plain, *with_load, trial.effort])
-    top = min(high_hz, 0.45 * trial.rate_hz)
-    sections = _band_pass(low_hz, top, trial.rate_hz)
-    filtered: FloatArray = sosfiltfilt(sections, np.nan_to_num(stack), axis=-1)
-    moving = np.abs(trial.velocity) > speed
-    return filtered[:, trial.usable & moving]
-
-
-@lru_cache(maxsize=256)  # trials of one bench have one rate, and the design takes longer than the filtering
-def _band_pass(low_hz: float, high_hz: float, rate_hz: float) -> FloatArray:
-    sections: FloatArray = butter(2, (low_hz, high_hz), btype="bandpass", fs=rate_hz, output="sos")
-    return sections

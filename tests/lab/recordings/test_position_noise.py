@@ -1,0 +1,50 @@
+"""Samples that are old by differing times are noise of the position, and make no inertia smaller."""
+
+import numpy as np
+import pytest
+
+from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.model.fit import fit_model
+from compensator.lab.recordings.position_noise import position_noise
+from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.dataset import Processing
+from tests.lab.synthetic import FACTS, Bench, Joint, Plan, recordings
+
+RATE_HZ = 125.0
+ODD = (1, 3, 5, 7, 9)  # harmonics of a triangle: quick turns, and little acceleration between
+
+
+def turning(oldest_s: float):
+    """Recordings of a joint that turns quickly, whose positions are 0 .. oldest_s old."""
+    plans = [
+        Plan(f"{hz:g} Hz", [(0.5 / n**2, hz * n, n * load_kg) for n in ODD], load_kg=load_kg)
+        for hz, load_kg in ((0.5, 0.0), (0.6, 0.1), (0.7, 0.2), (0.8, 0.3))
+    ]
+    made = recordings(bench=Bench(rate_hz=RATE_HZ, quantum=0.0), trials=plans)
+    random = np.random.default_rng(5)
+    for one in made:
+        time_s, position = one.channels["time_s"], one.channels["position_rad"]
+        position[:] = np.interp(time_s - random.uniform(0.0, oldest_s, len(time_s)), time_s, position.copy())
+    return made
+
+
+@pytest.mark.parametrize("oldest_s", [0.0, 1e-3, 3e-3])
+def test_inertia_is_found_behind_values_that_are_now_fresh_and_now_old(oldest_s):
+    dataset = make_dataset(turning(oldest_s), FACTS, Processing())
+    fit = fit_model(dataset, [*default_effects(FACTS), "measurement_delay"])
+    (inertia,) = (term for term in fit.terms if term.effect.name == "inertia")
+    assert inertia.coefficients[0] == pytest.approx(Joint().inertia, rel=0.03)
+
+
+def test_the_noise_is_that_of_a_uniform_age_times_the_speed():
+    oldest_s = 2e-3
+    for one in turning(oldest_s):
+        speed = np.gradient(one.channels["position_rad"], 1.0 / RATE_HZ)
+        expected = oldest_s**2 / 12.0 * float(np.mean(speed**2)) * 2.0 / RATE_HZ
+        assert position_noise(one, FACTS) == pytest.approx(expected, rel=0.5)
+
+
+def test_counts_are_noise_of_a_twelfth_of_their_square():
+    quantum = 1e-3
+    made = recordings(bench=Bench(rate_hz=RATE_HZ, quantum=quantum), trials=[Plan("wide", [(1.0, 0.31, 0.0)])])
+    assert position_noise(made[0], FACTS) == pytest.approx(quantum**2 / 12.0 * 2.0 / RATE_HZ, rel=0.3)
