@@ -71,13 +71,12 @@ class FourFamilies:
     def _goes_before(self, one: Answer, named: Fit, first: Answer) -> bool:
         """Whether a name goes before another answer: before a curve, unless that predicts other trials better for sure.
 
-        Before another name, where it does so itself. A delay lowers many errors a little: one of the chain needs more
-        evidence, too, of the same rows.
+        Before another name, where it does so itself; one of the chain only before one of the same rows.
         """
         rows: MotionRows = "sliding" if one is self.chain else "moving"
         if first.verdict == "missing":
-            enough = one is not self.chain or (first is self.steady and one.evidence > first.evidence)
-            return enough and first.explained is not None and _predicts_better(named, first.explained, rows)
+            comparable = one is not self.chain or first is self.steady
+            return comparable and first.explained is not None and _predicts_better(named, first.explained, rows)
         curve = with_curve(self.gathered.fit, first.driver)
         return curve is None or not _predicts_better(curve, named, rows)
 
