@@ -15,6 +15,7 @@ class Answer:
 
     Attributes:
         remains: more than noise is left that nothing named here explains.
+        evidence: noncentrality of what is named in steady sliding.
         explained: the model with the effect that is named, where it shows in motion.
         Others as in `Diagnosis`.
     """
@@ -27,3 +28,4 @@ class Answer:
     notes: list[Note]
     remains: bool = False
     explained: Fit | None = None
+    evidence: float = 0.0

@@ -117,7 +117,8 @@ class _Family:
         examined = [first, *(one for one in self.examined if one is not candidate)]
         sentence = missing_in_words(first, own_chance)
         notes = what_remains(explained, show_in, candidate.effect.name)
-        return Answer("missing", sentence, own_chance, examined, None, notes, bool(notes), explained)
+        remains, evidence = bool(notes), best.noncentrality
+        return Answer("missing", sentence, own_chance, examined, None, notes, remains, explained, evidence)
 
     def _chance_of(self, candidate: Candidate) -> float:
         """The chance that luck alone brings anything as far as this effect."""

@@ -14,17 +14,19 @@ from compensator.lab.effects.catalogue import effect_named
 NOTHING = Answer("nothing", "", 1.0, [], None, [])
 
 
-def named(name: str) -> Answer:
+def named(name: str, evidence: float = 100.0) -> Answer:
     """An answer with a name, as far as other families look at it."""
     candidate: Any = SimpleNamespace(effect=effect_named(name))
-    return Answer("missing", "", 0.001, [candidate], None, [], explained=model_of(name))
+    return Answer("missing", "", 0.001, [candidate], None, [], explained=model_of(name), evidence=evidence)
 
 
 def model_of(name: str) -> Any:
     return SimpleNamespace(names=(name,))
 
 
-BACKLASH, COGGING, DWELL, ENCODER = map(named, ("backlash", "cogging", "dwell_strengthening", "encoder_eccentricity"))
+BACKLASH, COGGING, DWELL = map(named, ("backlash", "cogging", "dwell_strengthening"))
+ENCODER, DELAY = named("encoder_eccentricity", 90.0), named("measurement_delay", 90.0)
+LATER = named("effort_filter", 200.0)
 CURVE = replace(NOTHING, verdict="unknown-effect", driver="time")
 UNSEEN = replace(named("rate_dependent_breakaway"), explained=None)  # in motion
 
@@ -35,6 +37,8 @@ UNSEEN = replace(named("rate_dependent_breakaway"), explained=None)  # in motion
         (NOTHING, BACKLASH, None, NOTHING, {}, BACKLASH),
         (COGGING, BACKLASH, None, ENCODER, {("encoder_eccentricity", "cogging"): "sliding"}, ENCODER),
         (COGGING, BACKLASH, None, ENCODER, {}, COGGING),
+        (COGGING, BACKLASH, None, DELAY, {("measurement_delay", "cogging"): "sliding"}, COGGING),
+        (COGGING, BACKLASH, None, LATER, {("effort_filter", "cogging"): "sliding"}, LATER),
         (COGGING, BACKLASH, None, NOTHING, {("backlash", "cogging"): "moving"}, BACKLASH),
         (COGGING, BACKLASH, None, NOTHING, {("backlash", "cogging"): "sliding"}, COGGING),
         (CURVE, BACKLASH, None, NOTHING, {}, BACKLASH),  # a name says more than a curve
