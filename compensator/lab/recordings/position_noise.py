@@ -23,7 +23,7 @@ from compensator.lab.recordings.plain_columns import (
 from compensator.lab.recordings.processing import make_signals, sample_rate_hz
 from compensator.lab.recordings.recording import Recording
 
-MOST = 0.03  # of the effort, as good a current sensor; the corner grows with its power of 0.4
+MOST = 0.01  # of the effort, as a good current sensor; the corner grows with its power of 0.4
 NOISE_ONLY = 0.75  # of half the sample rate: above, a position holds hardly any motion
 SEGMENT_S = 4.0
 STEADY_HZ = 0.1  # what is slower has no acceleration
