@@ -22,7 +22,6 @@ from compensator.lab.screening.evidence import VERY_STRONG, Evidence, kept_evide
 
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
-SHARE_NEAR_REVERSALS = 0.9  # the same there, where every effect has a little of what any other explains
 NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/explanation/diagnosis.md)
 
 
@@ -62,7 +61,7 @@ def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Ca
     confirmed = [index for index, one in enumerate(found) if is_confirmed(one)]
     best = confirmed[0] if confirmed else None
     for index in confirmed[1:]:
-        enough = evidence[index].noncentrality >= share_of(gathered.show_in) * evidence[confirmed[0]].noncentrality
+        enough = evidence[index].noncentrality >= FORMULA_SHARE * evidence[confirmed[0]].noncentrality
         if best is not None and enough and predicts_better(afters[index], afters[best]):
             best = index
     order = sorted(range(len(found)), key=lambda one: (one != best, one not in confirmed))  # stable: by score
@@ -82,11 +81,6 @@ def as_in_the_ladder(candidate: Candidate, fit: Fit, explained: Fit, show_in: Mo
 
 def _held_out(fit: Fit, show_in: MotionRows) -> HeldOut:
     return held_out(fit, show_in if fit.dataset.rows == "sliding" else fit.dataset.rows)
-
-
-def share_of(show_in: MotionRows) -> float:
-    """Of the evidence of the likeliest effect: what explains less is the shadow of something else."""
-    return FORMULA_SHARE if show_in == "sliding" else SHARE_NEAR_REVERSALS
 
 
 def _spans(gathered: Candidates) -> list[tuple[str, FloatArray, bool]]:

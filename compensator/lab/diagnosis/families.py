@@ -6,7 +6,7 @@ from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
 from compensator.lab.diagnosis.confirmation import is_confirmed, is_sure
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import as_in_the_ladder, best_shapes, examine, share_of
+from compensator.lab.diagnosis.examination import FORMULA_SHARE, as_in_the_ladder, best_shapes, examine, explains
 from compensator.lab.diagnosis.physical import (
     is_before_scan,
     is_past_scan,
@@ -20,7 +20,7 @@ from compensator.lab.diagnosis.wording import bending_in_words, missing_in_words
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Evidence, Screening, among_all
+from compensator.lab.screening.evidence import Evidence, Screening, among_all, kept_evidence
 
 FEWEST_SHOWN = 2
 
@@ -103,8 +103,8 @@ class _Family:
             return ""
         if own_chance > SIGNIFICANT:
             return "may be luck among all that was tried"
-        if best.noncentrality < share_of(show_in) * self.most.noncentrality:
-            return f"explains much less than {self.most.block.name}, which cannot be it"
+        if self._is_shadow(best):
+            return f"explains little beside {self.most.block.name}, which cannot be it"
         explained = fit_effects(fit, [*fit.names, candidate.effect.name])
         first = as_in_the_ladder(candidate, fit, explained, show_in)
         if not is_confirmed(first):
@@ -119,6 +119,13 @@ class _Family:
         notes = what_remains(explained, show_in, candidate.effect.name)
         remains, evidence = bool(notes), best.noncentrality
         return Answer("missing", sentence, own_chance, examined, None, notes, remains, explained, evidence)
+
+    def _is_shadow(self, one: Evidence) -> bool:
+        """Whether what explains most, though it cannot be the effect, explains most of what this one does."""
+        if one.block.name == self.most.block.name:
+            return False
+        beside = self.gathered.with_block(self.most.block).bases
+        return explains(kept_evidence(beside, [one.block], self.gathered.noise), one)
 
     def _chance_of(self, candidate: Candidate) -> float:
         """The chance that luck alone brings anything as far as this effect."""
@@ -137,7 +144,10 @@ class _Family:
         if p_value > SIGNIFICANT:
             return None
         too_far = bends.effect.least_of_friction > 0.0 and is_past_scan(gathered, most)
-        part = is_too_small(gathered, most) and not is_before_scan(gathered, most)
+        # a shorter distance of more friction may explain nearly as much, and then nobody knows how large a part it is
+        alike = (one for one in self.named.evidence if one.block.name == most.block.name)
+        likely = [one for one in alike if one.noncentrality >= FORMULA_SHARE * most.noncentrality]
+        part = all(is_too_small(gathered, one) and not is_before_scan(gathered, one) for one in likely)
         if not too_far and not part:
             return None
         ranked = [bends, *(one for one in self.examined if one is not bends)]

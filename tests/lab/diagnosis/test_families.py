@@ -75,7 +75,8 @@ def test_in_steady_sliding_a_name_must_hold_in_the_model_that_would_be_had(monke
 @pytest.mark.parametrize(
     ("extra", "cannot_be", "verdict", "first"),
     [
-        (lambda x: 0.02 * x.q, "spring", "missing", "cogging"),
+        (lambda x: 0.02 * x.q + 0.01 * np.sin(7.0 * x.q), "spring", "missing", "cogging"),  # there, too
+        (lambda x: 0.02 * x.q, "spring", "nothing", "spring"),
         (lambda x: 0.02 * np.sin(3.0 * x.q), "cogging", "nothing", "cogging"),  # what is next is but its shadow
     ],
 )
