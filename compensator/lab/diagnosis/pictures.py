@@ -38,7 +38,7 @@ def _partial_residual(gathered: Candidates, item: Evidence) -> tuple[FloatArray,
     base, columns = gathered.as_measured(item.block.base), item.block.columns
     if gathered.noise is not None:
         columns = gathered.noise.as_measured(columns)
-    projected = columns - base.basis @ (base.basis.T @ columns)
+    projected = base.beyond(columns)
     coefficients = np.linalg.lstsq(projected, base.residual, rcond=1e-6)[0]
     curve = columns @ coefficients / gathered.weights
     left = (base.residual - projected @ coefficients) / gathered.weights

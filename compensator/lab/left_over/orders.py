@@ -128,15 +128,28 @@ def _peak(path: Path, base: Base, sizes: FloatArray, kind: str) -> _Peak | None:
     beside = base.extended(path.factor(kind) * path.columns(orders[best : best + 1]))
     left = path.scanned(beside.basis, beside.residual, around, (kind,))[kind]
     noise = 0.5 * float(np.mean(left[left > 0.0])) if left.any() else TINY  # of two
-    chance = chance_of_one(float(sizes[best]) / (2.0 * noise), np.count_nonzero(left) / STEPS)
+    columns = beside.beyond(path.factor(kind) * path.columns(around))[:, np.tile(left > 0.0, 2)]
+    chance = chance_of_one(float(sizes[best]) / (2.0 * noise), 0.5 * independent_of(columns))
     order = path.refined(base.basis, base.residual, float(orders[best]), kind)
     return _Peak(kind, order, chance, noise)
+
+
+def independent_of(columns: FloatArray) -> float:
+    """How many independent directions columns (n, k) have: of the powers p of principal ones, (sum p)^2 / sum p^2.
+
+    Orders that only a part of the travel shows are alike over many; the noise beside one is known from fewer.
+    """
+    if not columns.size:
+        return 0.0
+    own = columns / np.maximum(np.linalg.norm(columns, axis=0), TINY)
+    alike = own.T @ own
+    return float(len(alike) ** 2 / np.sum(alike**2))
 
 
 def _line(gathered: Candidates, path: Path, base: Base, peak: _Peak, tries: float) -> Line | None:
     """The line of a peak, of as many that were tried; None where it is next to nothing, or of one stretch."""
     columns = path.factor(peak.kind) * path.columns(np.array([peak.order]))
-    left = columns - base.basis @ (base.basis.T @ columns)
+    left = base.beyond(columns)
     _, stretch = np.unique(gathered.fit.dataset.block_index[gathered.rows], return_inverse=True)
     coefficients, foretold = foretold_by_others(left, base.residual, stretch.reshape(-1))
     share = rms(left @ coefficients / gathered.weights) / rms(gathered.fit.dataset.effort[gathered.rows])

@@ -7,19 +7,21 @@ turn. Cosine and sine of every order are held against what is left, as a force a
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numba import njit
 from scipy.optimize import minimize_scalar
 
-from compensator.lab.effects.effect import Motion, Round
+from compensator.lab.effects.effect import Motion, Round, Shape
 from compensator.lab.recordings.low_pass import FILTER_ORDER
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.rows.dataset import Dataset
 
 STEPS = 4.0  # per width of a line, as of those in time
 MOST_ORDERS = 2000  # a joint of many turns is looked at up to so many
-SLOW = 0.02  # share of the rows, the slowest: an order that even these pass too quickly for the filter cannot show
+PLACES = 50  # along the travel
+SHOWN = 0.2  # of them: what the filter shows at fewer has hardly been seen to come back
 AT_ONCE = 2**21  # values of columns
 NEW = 0.02  # share of a column's power beside the model: of less, little can be told from the model itself
 APART = 1e-3  # of their powers: of less, cosine and sine can hardly be told from each other beside the model
@@ -65,11 +67,26 @@ class Path:
         """The width of a line: once over the travel [rad per unit of position]."""
         return float(2.0 * np.pi / max(float(np.ptp(self.position)), np.finfo(float).tiny))
 
+    @cached_property
+    def highest(self) -> float:
+        """The highest order that enough of the travel was passed slowly enough for [rad per unit of position].
+
+        Where the joint turns back it is slow, too: over so short a way that any curve is a part of some wave.
+        """
+        travel = max(float(np.ptp(self.position)), np.finfo(float).tiny)
+        place = np.minimum((PLACES * (self.position - self.position.min()) / travel).astype(np.int64), PLACES - 1)
+        slowest = np.full(PLACES, np.inf)
+        np.minimum.at(slowest, place, self.speed)
+        return self.cutoff_rad_s / max(float(np.sort(slowest)[int(SHOWN * PLACES) - 1]), np.finfo(float).tiny)
+
+    def shown(self, grid: Sequence[Shape]) -> list[Shape]:
+        """Shapes whose order the rows show, of a grid of an effect that goes round; the lowest where they show none."""
+        return [shape for shape in grid if shape[0] <= self.highest] or [min(grid)]
+
     @property
     def orders(self) -> FloatArray:
-        """From once over the travel to what the filter takes off even the slowest rows [rad per unit of position]."""
-        highest = self.cutoff_rad_s / max(float(np.quantile(self.speed, SLOW)), np.finfo(float).tiny)
-        count = int(np.clip((highest / self.once - 1.0) * STEPS, 1.0, MOST_ORDERS))
+        """From once over the travel to the highest that can show [rad per unit of position]."""
+        count = int(np.clip((self.highest / self.once - 1.0) * STEPS, 1.0, MOST_ORDERS))
         orders: FloatArray = self.once * (1.0 + np.arange(count) / STEPS)
         return orders
 

@@ -84,6 +84,9 @@ class _Search:
 
     def scan(self) -> Shape:
         """The best shape of the effect's grid, or an order beyond it where nobody tells which there can be."""
+        if self._effect.goes_round is not None:
+            path = Path.of(self._dataset, self._rows, self._weight[:, 0])
+            self._grid = path.shown(self._grid)
         powers = [self.explained(columns) for columns in self._columns()]
         best = int(np.argmax(powers))
         beyond = self._beyond_grid()

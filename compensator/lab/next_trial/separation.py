@@ -98,7 +98,7 @@ def _between_stretches(gathered: Candidates, candidate: Candidate, left: FloatAr
     """Rows per independent row for an effect, by its scatter between stretches."""
     block = _block(gathered, candidate)
     base = gathered.bases[block.base]
-    projected = block.columns - base.basis @ (base.basis.T @ block.columns)
+    projected = base.beyond(block.columns)
     coefficients = np.linalg.lstsq(projected, base.residual, rcond=1e-6)[0]
     return rows_per_independent_row(projected @ coefficients, left, stretch)
 

@@ -45,13 +45,16 @@ class Base:
 
     def coefficients(self, columns: FloatArray) -> FloatArray:
         """Of columns (n, k), fitted freely on top of the base, shape (k,)."""
-        rest = columns - self.basis @ (self.basis.T @ columns)
-        found: FloatArray = np.linalg.lstsq(rest, self.residual, rcond=1e-6)[0].astype(np.float64)
+        found: FloatArray = np.linalg.lstsq(self.beyond(columns), self.residual, rcond=1e-6)[0].astype(np.float64)
         return found
+
+    def beyond(self, columns: FloatArray) -> FloatArray:
+        """What columns (n, k) have beyond the base, (n, k)."""
+        rest: FloatArray = columns - self.basis @ (self.basis.T @ columns)
+        return rest
 
     def extended(self, columns: FloatArray) -> "Base":
         """The base with columns (n, k) beside its own."""
-        rest = columns - self.basis @ (self.basis.T @ columns)
-        added = orthonormal(rest - self.basis @ (self.basis.T @ rest))  # twice is enough (Kahan, Parlett)
+        added = orthonormal(self.beyond(self.beyond(columns)))  # twice is enough (Kahan, Parlett)
         residual = self.residual - added @ (added.T @ self.residual)
         return Base(np.column_stack([self.basis, added]), residual)

@@ -42,7 +42,7 @@ def _between(gathered: Candidates, own: list[Block]) -> Block:
     def power(block: Block) -> float:
         base = gathered.bases[block.base]
         column = block.columns[:, 0]
-        return power_within(column - base.basis @ (base.basis.T @ column), base.residual, bounds)
+        return power_within(base.beyond(column), base.residual, bounds)
 
     start = max(own, key=power).shape
     return block_of(between([block.shape for block in own], start, lambda shape: -power(block_of(shape))))

@@ -277,7 +277,7 @@ def _contribution(base: Base, directions: FloatArray) -> FloatArray:
 def new_directions(base: Base, block: Block) -> FloatArray:
     """Orthonormal basis of what the block's columns add to the base, shape (n, rank)."""
     own = np.asfortranarray(block.columns)  # column by column, as it is gone through
-    columns = np.asfortranarray(own - base.basis @ (base.basis.T @ own))
+    columns = np.asfortranarray(base.beyond(own))
     before, after = (np.sqrt(np.einsum("nk,nk->k", one, one)) for one in (own, columns))
     return orthonormal(columns[:, after > 1e-3 * np.where(before > 0, before, np.inf)])
 

@@ -10,6 +10,7 @@ from compensator.lab.effects.catalogue import chain_effects
 from compensator.lab.effects.effect import Effect, MotionRows, Shape
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.order_search import Path
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import bounded_influence, row_weights
 from compensator.lab.recordings.recording import BoolArray, FloatArray
@@ -78,6 +79,7 @@ class _Builder:
     def _judged(self) -> tuple[list[tuple[Effect, list[Shape]]], dict[str, str]]:
         dataset = self._fit.dataset
         wanted, left_out = [], {}
+        path = Path.of(dataset, self._rows, self._weights)
         for effect in catalogue.candidates(self._fit.names, dataset.facts):
             if effect.rows != self._show_in:
                 continue
@@ -92,7 +94,8 @@ class _Builder:
             except NotApplicableError as reason:
                 left_out[effect.name] = str(reason)
                 continue
-            wanted.append((effect, effect.shapes(dataset.trials[0].motion)))
+            shapes = effect.shapes(dataset.trials[0].motion)
+            wanted.append((effect, path.shown(shapes) if effect.goes_round is not None else shapes))
         return wanted, left_out
 
     def _base_without(self, nuisances: frozenset[str]) -> int:

@@ -9,7 +9,7 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.left_over import orders
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.left_over import left_over
-from compensator.lab.left_over.orders import FORCE, FRICTION, GROWING, Line, foretold_by_others, line_of
+from compensator.lab.left_over.orders import FORCE, FRICTION, GROWING, Line, foretold_by_others, independent_of, line_of
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.gathering import gather
 from tests.lab.left_over.judged import fitted
@@ -80,6 +80,14 @@ def test_what_differs_along_the_path_but_does_not_come_back_is_no_line():
         return 0.02 * 0.08 * np.interp(path, 0.05 * np.arange(len(steps)), steps) * np.sign(x.v)
 
     assert line(fitted(extra)) is None
+
+
+def test_directions_that_are_alike_count_once():
+    apart = np.eye(6)[:, :4]
+    assert independent_of(apart) == pytest.approx(4.0)
+    assert independent_of(np.repeat(apart[:, :1], 5, axis=1)) == pytest.approx(1.0)
+    assert independent_of(apart * [1.0, 2.0, 3.0, 4.0]) == pytest.approx(4.0)
+    assert independent_of(np.empty((6, 0))) == 0.0
 
 
 def test_what_comes_in_one_stretch_alone_is_no_line(monkeypatch):

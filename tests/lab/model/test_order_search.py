@@ -9,7 +9,7 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.linear import orthonormal
-from compensator.lab.model.order_search import explained
+from compensator.lab.model.order_search import Path, explained
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
@@ -46,6 +46,23 @@ def test_what_is_not_told_from_the_model_explains_nothing():
     hidden = basis[:, 0] + 1e-3 * random.standard_normal(ROWS)
     found = explained(np.column_stack([hidden, random.standard_normal(ROWS)]), basis, random.standard_normal(ROWS))
     assert found == pytest.approx([0.0])
+
+
+def path_of(position, speed) -> Path:
+    return Path(position, speed, np.ones(len(position)), np.ones(len(position)), cutoff_rad_s=30.0)
+
+
+def test_the_highest_order_is_one_that_enough_of_the_travel_was_slow_enough_for():
+    """Where a joint turns back every order passes the filter, over a part of one wave."""
+    phase = np.linspace(0.0, 4.0 * np.pi, 2000)
+    steady = path_of(np.linspace(-1.0, 1.0, 2000), np.full(2000, 0.5))
+    swung = path_of(np.sin(phase), 2.0 * np.abs(np.cos(phase)))
+    assert steady.highest == pytest.approx(30.0 / 0.5)
+    assert swung.highest == pytest.approx(30.0 / (2.0 * np.sqrt(1.0 - 0.84**2)), rel=0.02)  # a tenth at either end
+    assert swung.orders.max() <= swung.highest
+    grid = [(3.0,), (20.0,), (300.0,)]
+    assert swung.shown(grid) == [(3.0,), (20.0,)]
+    assert swung.shown([(300.0,), (200.0,)]) == [(200.0,)]
 
 
 UNTOLD = replace(FACTS, gear_ratio=None)
