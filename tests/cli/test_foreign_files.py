@@ -1,13 +1,14 @@
 """`friction-bench import --guess` and `explain` on files that nobody described."""
 
 import json
+import shlex
 from math import sin
 
 import numpy as np
 import pytest
 
 from bench.recording_set import read_mapping, read_recording_set, read_rig
-from tests.recording_set.foreign_files import COLUMNS, FILES, POSITION_RAD, VELOCITY_RAD_S, motor_side, rows
+from tests.recording_set.foreign_files import COLUMNS, FILES, POSITION_RAD, TIME_S, VELOCITY_RAD_S, motor_side, rows
 
 
 def test_a_guess_is_shown_written_and_can_be_imported(command, tmp_path):
@@ -123,6 +124,32 @@ def test_an_answer_that_is_none_is_explained(command, tmp_path, take):
     assert "--take" in result.stderr
 
 
+def test_the_command_that_a_guess_ends_with_imports_what_it_guessed(command, tmp_path):
+    names = [f"log {number} of a long afternoon at the bench.csv" for number in range(8)]
+    for name in names:
+        (tmp_path / name).write_bytes(FILES["german excel, utf-8 mark"].data)
+    guessed = command("--store", "other.sqlite", "import", "--guess", *names)
+    [line] = [line for line in guessed.stdout.splitlines() if line.startswith("then: friction-bench ")]
+    made = command(*shlex.split(line.removeprefix("then: friction-bench ")), "--json")
+    assert made.exit_code == 0, made.output
+    assert json.loads(made.stdout)["trials"] == len(names)
+
+
+def test_the_same_recordings_are_told_when_they_come_in_again(command, tmp_path):
+    (tmp_path / "log.csv").write_bytes(FILES["degrees and rpm"].data)
+    assert command("import", "--guess", "log.csv").exit_code == 0
+    words = ["import", "log.csv", "--mapping", "mapping.toml", "--rig", "rig.toml"]
+    assert command(*words).stderr == ""
+    mapping = tmp_path / "mapping.toml"
+    mapping.write_text(mapping.read_text().replace('unit = "rpm"', 'unit = "rpm"\nscale = 1.01'))
+    assert "experiment 1 has the same recordings already" in command(*words, "--json").stderr
+    for factor in (1.0, 1.1):  # another recording under the same name, as long as the first
+        measured = {"position_rad": factor * POSITION_RAD, "current_a": TIME_S + factor}
+        (tmp_path / "else.csv").write_text(rows({**COLUMNS, **measured}))
+        assert command("import", "else.csv", "--rig", "rig.toml").stderr == ""
+    assert len(json.loads(command("experiments", "--json").stdout)) == 4
+
+
 def test_a_report_is_not_written_over(command, tmp_path):
     (tmp_path / "log.csv").write_bytes(FILES["plain"].data)
     (tmp_path / "mine.html").write_text("mine")
@@ -187,6 +214,11 @@ def test_a_joint_that_never_slid_is_reported_and_not_refused(command, tmp_path):
     assert "springs back, with 150 N m/rad" in result.stdout
     assert "breakaway lies beyond that" in result.stdout
     assert "Effort over position" in (tmp_path / "explain-push.html").read_text()
+    again = command("explain", "push.csv")
+    assert again.exit_code == 0, again.output
+    assert "written: explain-push-2.html" in again.stdout
+    assert "experiment 1 has the same recordings already" in again.stderr
+    assert (tmp_path / "explain-push-2.html").exists()
     assert json.loads(command("study", "list", "--json").stdout) == []
 
 
