@@ -53,8 +53,8 @@ def import_recording_set(
     return store.add_imported(IMPORT_KIND, parameters, {"software": software()}, rig, recordings)
 
 
-def imported_before(store: Store, recording_set: RecordingSet) -> int | None:
-    """The newest imported experiment that has the recordings of a set already, however their columns were mapped.
+def imported_before(store: Store, recording_set: RecordingSet) -> list[str]:
+    """Note of the newest imported experiment that has the recordings of a set already, however they were mapped.
 
     The store keeps no hash of a file: names and rows are compared, and what was measured in their first rows.
     """
@@ -64,8 +64,11 @@ def imported_before(store: Store, recording_set: RecordingSet) -> int | None:
             (trial := there.get(one.name)) is not None and trial.rows == len(one) and _is_same(store, trial, one)
             for one in recording_set.recordings
         ):
-            return experiment.id
-    return None
+            return [
+                f"experiment {experiment.id} has the same recordings already; they come in once more. A study of both "
+                "counts them twice"
+            ]
+    return []
 
 
 def _is_same(store: Store, trial: Trial, recording: Recording) -> bool:

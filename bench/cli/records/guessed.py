@@ -68,14 +68,11 @@ def write_guess(guess: "Guess", rig: "Rig | None", mapping_file: Path, rig_file:
 
 
 def remark_imported_before(store: "Store", recordings: "RecordingSet") -> None:
-    """Say, on stderr, which experiment has these recordings already: a study of both would count them twice."""
+    """Say, on stderr, which experiment has these recordings already."""
     from bench.recording_set import imported_before
 
-    if (before := imported_before(store, recordings)) is not None:
-        remark(
-            f"experiment {before} has the same recordings already; they come in once more. A study of both counts them "
-            "twice"
-        )
+    for note in imported_before(store, recordings):
+        remark(note)
 
 
 def _picture(outline: tuple[float, ...]) -> str:
