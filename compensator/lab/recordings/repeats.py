@@ -42,7 +42,7 @@ def likeness(one: Recording, other: Recording) -> float | None:
         if channel in one.channels and channel in other.channels:
             ways = _at_equal_times(one, other, channel)
             if ways.shape[1] > 1 and (np.std(ways, axis=1) > STANDS).all():
-                return float(np.corrcoef(ways)[0, 1])
+                return float(np.corrcoef(*ways)[0, 1])
     return None
 
 
