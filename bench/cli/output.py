@@ -23,6 +23,7 @@ class FileError(BenchError, OSError):
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON and nothing else.")]
 _MOST_COLUMNS = 200
+COMMAND = "friction-bench "
 
 NO_SHARE = 1e-7  # less is rounding
 SMALL_SHARE = 5e-4  # two digits after the point would say next to nothing of it
@@ -45,8 +46,8 @@ def console() -> "Console":
 
 
 def say(sentence: str) -> None:
-    """One sentence."""
-    console().print(shown(sentence), highlight=False)
+    """One sentence. One with a command is left to the terminal to wrap: with a line end in it, half of it would run."""
+    console().print(shown(sentence), highlight=False, soft_wrap=COMMAND in sentence)
 
 
 def complain(sentence: str) -> None:

@@ -45,7 +45,7 @@ class Study:
         """Units of one kind, this study's the first: what they have in common, how they scatter, which is an outlier.
 
         Args:
-            beside: a study for each other unit, at least two.
+            beside: a study for each other unit; beside one alone, `differences` tells what differs.
             model_id: of this study, fitted to all; None takes the newest.
         """
         numbers = [one.study_id for one in beside]

@@ -8,7 +8,7 @@ from bench.recording_set.recording_set import RecordingSet, read_rig
 from bench.recording_set.ros2_bag import read_ros2_bags
 from bench.recording_set.stream import RecordingStream, stream_of, stream_of_trial
 from bench.recording_set.text.csv_text import csv_chunks
-from bench.recording_set.transfer import export_experiment, export_parquet, import_recording_set
+from bench.recording_set.transfer import export_experiment, export_parquet, import_recording_set, imported_before
 from bench.recording_set.write import write_recording_set
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "export_experiment",
     "export_parquet",
     "import_recording_set",
+    "imported_before",
     "parquet_chunks",
     "read_mapping",
     "read_recording_set",

@@ -26,6 +26,7 @@ from bench.recording_set.trials_csv import (
     read_trials_csv,
 )
 from compensator.lab.recordings.recording import Recording
+from compensator.lab.recordings.repeats import unlike_repeats
 
 RIG_FILE = "rig.toml"
 MAPPING_FILE = "mapping.toml"
@@ -58,7 +59,7 @@ def read_recording_set(
             raise RecordingSetError(container.path.name, _without_rig(paths[0].parent))
         notes = [f"{table.place}: {table.told}" for table in tables if isinstance(table, Table) and table.told]
     check_recordings(recordings, rig, mapping)
-    notes += _without_load(recordings)
+    notes += [*_without_load(recordings), *_unlike(recordings)]
     return RecordingSet(name_of_set(paths), rig, recordings, tuple(notes))
 
 
@@ -83,6 +84,16 @@ def _without_load(recordings: Sequence[Recording]) -> list[str]:
     )
     remedy = f"put it into {TRIALS_FILE}, or into the [[trials]] of a mapping (conditions = {{ load_kg = 0.1 }})"
     return [f"{which} load_kg: effects of the load are not judged; {remedy}"]
+
+
+def _unlike(recordings: Sequence[Recording]) -> list[str]:
+    """Note of trials that are told as repeats, and do not move alike."""
+    return [
+        f"trials '{one.name}' and '{other.name}' are told as repeats of each other, and their motions differ "
+        f"(correlation {found:.2f}): a study would take that for scatter. Tell motions apart by a condition, such as "
+        'waveform = "slow sine"'
+        for one, other, found in unlike_repeats(recordings)
+    ]
 
 
 def name_of_set(paths: Sequence[Path]) -> str:

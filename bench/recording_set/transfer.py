@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 from pydantic import ValidationError
 
 from bench.config.rig import Rig
@@ -13,7 +14,7 @@ from bench.provenance import software
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.parquet import parquet_chunks
 from bench.recording_set.recording_set import RecordingSet
-from bench.recording_set.stream import RecordingStream, stream_of_trial
+from bench.recording_set.stream import PIECE_ROWS, RecordingStream, stream_of_trial
 from bench.recording_set.write import write_streams
 from bench.store import Store, Trial
 from bench.store.records import OUTCOMES, Experiment
@@ -25,6 +26,7 @@ CONTROL_LOOP = "recorded_by_control_loop"
 """Parameter of an imported experiment whose rows a control loop of this bench recorded."""
 BY_CONTROL_LOOP = {"recorded_by": "control loop"}
 """Condition by which an exported trial says so."""
+TYPED = ("time_s", "target_rad", "target_m")
 OWN_SOURCES = ("simulated", "real")
 OUTCOME, REASON = "outcome", "reason"
 
@@ -49,6 +51,35 @@ def import_recording_set(
     rig = recording_set.rig.model_dump(mode="json", exclude_none=True)
     recordings = (_with_outcome(recording) for recording in recording_set.recordings)
     return store.add_imported(IMPORT_KIND, parameters, {"software": software()}, rig, recordings)
+
+
+def imported_before(store: Store, recording_set: RecordingSet) -> list[str]:
+    """Note of the newest imported experiment that has the recordings of a set already, however they were mapped.
+
+    The store keeps no hash of a file: names and rows are compared, and what was measured in their first rows.
+    """
+    for experiment in store.experiments(IMPORT_KIND):
+        there = {trial.name: trial for trial in store.trials(experiment.id)}
+        if all(
+            (trial := there.get(one.name)) is not None and trial.rows == len(one) and _is_same(store, trial, one)
+            for one in recording_set.recordings
+        ):
+            return [
+                f"experiment {experiment.id} has the same recordings already; they come in once more. A study of both "
+                "counts them twice"
+            ]
+    return []
+
+
+def _is_same(store: Store, trial: Trial, recording: Recording) -> bool:
+    """Whether a channel that is measured has the same numbers, bit for bit; times and set points may be typed twice."""
+    rows = min(trial.rows, PIECE_ROWS)
+    pairs = (
+        (values, recording.channels[name][:rows])
+        for name, values in zip(trial.channels, store.part(trial, 0, rows), strict=True)
+        if name in recording.channels and name not in TYPED
+    )
+    return any(np.array_equal(*pair, equal_nan=True) and len(np.unique(pair[0])) > 1 for pair in pairs)
 
 
 def export_experiment(store: Store, experiment_id: int, path: Path) -> None:

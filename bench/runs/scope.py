@@ -45,6 +45,16 @@ def scope_of(configuration: BenchConfiguration, drive: Description) -> tuple[Sco
     return tuple(_scopes(configuration, drive))
 
 
+def setting_to_add(configuration: BenchConfiguration, drive: Description) -> str:
+    """What the bench's file has to say for the effort to be told; "" where it is told, or no setting would help."""
+    if drive.untold is not None:
+        return drive.untold.remedy
+    if _effort(configuration, drive) or "duty" not in drive.measured:
+        return ""
+    wanted = "resistance_ohm and back_emf_v_s_rad in [rig.motor], ratio in [rig.gear]"
+    return f"nothing tells the effort; set {wanted}, as far as they are not there"
+
+
 def _scopes(configuration: BenchConfiguration, drive: Description) -> Iterator[Scope]:
     effort = _effort(configuration, drive)
     no_effort = "" if effort else _no_effort(drive)

@@ -11,15 +11,15 @@ from bench.study.keep import kept_of
 from bench.study.material import Definition, Material, material_of, model_of
 from bench.study.models.base import EffortName
 from bench.study.models.stages import FITTING, UNITS
-from bench.study.models.units import Unit, UnitComparison, UnitParameter, UnitValue
+from bench.study.models.units import Unit, UnitComparison, UnitDifference, UnitParameter, UnitValue
 from compensator.lab import progress
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Shape
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import relative_error
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.units.judgement import Judged, judge
-from compensator.lab.units.quantities import FEWEST_UNITS, UnitFit, quantities_of, shared_shapes, unit_fit_of
+from compensator.lab.units.judgement import PAIR, Judged, difference, judge
+from compensator.lab.units.quantities import FEWEST_UNITS, Quantity, UnitFit, quantities_of, shared_shapes, unit_fit_of
 from compensator.lab.units.random_effects import UPPER
 
 KIND = ("joint", "horizontal", "gear_ratio", "torque_per_current_n_m_a", "effort")
@@ -29,23 +29,23 @@ MOST_NAMED = 6
 
 @progress.stages(UNITS)
 def compare_units(store: Store, study_id: int, beside: Sequence[int], model_id: int | None = None) -> UnitComparison:
-    """What units have in common, what differs between them, and which of them is an outlier.
+    """What units have in common, what differs between them, and which of them is an outlier; of two, what differs.
 
     Args:
         store: with the studies.
         study_id: the study whose model is used; its trials are those of one unit.
-        beside: a study for each other unit, at least two.
+        beside: a study for each other unit; from two on it is known how units scatter.
         model_id: which model of the first; None takes the newest.
 
     Raises:
         NotFoundError: no such study, or one of its trials is gone.
-        StudyError: fewer than three, not of one kind, or a unit whose trials the model cannot be fitted to.
+        StudyError: fewer than two, not of one kind, or a unit whose trials the model cannot be fitted to.
     """
     study_ids = list(dict.fromkeys((study_id, *beside)))
-    if len(study_ids) < FEWEST_UNITS:
+    if len(study_ids) < PAIR:
         raise StudyError(
-            f"{len(study_ids)} units; to know how units scatter takes at least {FEWEST_UNITS}, to find an outlier "
-            "takes 4 and better 6: name one study for each"
+            f"1 unit; to see a difference takes {PAIR}, to know how units scatter at least {FEWEST_UNITS}, to find an "
+            "outlier takes 4 and better 6: name one study for each"
         )
     names = [store.study(number).name for number in study_ids]
     definitions = _alike(study_ids, [Definition.from_json(store.study(number).definition) for number in study_ids])
@@ -57,7 +57,7 @@ def compare_units(store: Store, study_id: int, beside: Sequence[int], model_id: 
     for one in progress.each(units):
         last = one.fit(chosen, shapes)
         found.append((one.told(last), unit_fit_of(last)))
-    assert last is not None, "three units or more were fitted"
+    assert last is not None, "two units or more were fitted"
     return _answer(last, [unit for unit, _ in found], [fitted for _, fitted in found])
 
 
@@ -127,12 +127,15 @@ def _words(fact: str) -> str:
 
 
 def _answer(fit: Fit, units: list[Unit], fitted: list[UnitFit]) -> UnitComparison:
-    quantities, lacking = quantities_of(fit, fitted)
+    fewest = min(len(units), FEWEST_UNITS)
+    quantities, lacking = quantities_of(fit, fitted, fewest)
     if not quantities:
         raise StudyError(
-            "no parameter is determined by the trials of three units; record longer or more trials, or fewer effects"
+            f"no parameter is determined by the trials of {fewest} units; record longer or more trials, or take fewer "
+            "effects"
         )
-    parameters = [_parameter(one, units) for one in judge(quantities)]
+    pair = [_difference(one) for one in quantities] if fewest == PAIR else []
+    parameters = [] if pair else [_parameter(one, units) for one in judge(quantities)]
     definition = fit.dataset.effort_definition
     return UnitComparison(
         effects=list(fit.names),
@@ -140,9 +143,10 @@ def _answer(fit: Fit, units: list[Unit], fitted: list[UnitFit]) -> UnitCompariso
         cutoff_hz=fit.dataset.cutoff_hz,
         units=units,
         parameters=parameters,
+        differences=pair,
         undetermined=lacking,
-        sentence=_sentence(parameters, len(units)),
-        notes=_notes(parameters, units),
+        sentence=_of_two(pair) if pair else _sentence(parameters, len(units)),
+        notes=_notes(parameters, units)[: 1 if pair else None],
     )
 
 
@@ -183,6 +187,30 @@ def _parameter(found: Judged, units: Sequence[Unit]) -> UnitParameter:
                 judged, values.value.tolist(), half.tolist(), found.deviations, strict=True
             )
         ],
+    )
+
+
+def _difference(found: Quantity) -> UnitDifference:
+    by, low, high = difference(found.values)
+    first, second = found.values.value.tolist()
+    return UnitDifference(
+        effect=found.effect,
+        name=found.parameter,
+        unit=found.unit,
+        first=first,
+        second=second,
+        difference=by,
+        low=low,
+        high=high,
+    )
+
+
+def _of_two(found: Sequence[UnitDifference]) -> str:
+    beyond = [one.name for one in found if not one.low <= 0.0 <= one.high]
+    seen = f"The 90 % interval of a difference leaves 0 out in {', '.join(beyond)}" if beyond else "No difference shows"
+    return (
+        f"{seen}; each of the {len(found)} intervals holds by itself. How units scatter, and whether one is an "
+        f"outlier, two cannot tell: that takes {FEWEST_UNITS} and better 6."
     )
 
 

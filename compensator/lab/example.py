@@ -12,12 +12,12 @@ import numpy as np
 
 from compensator.lab.at_rest.breakaway_rows import at_rest_motion
 from compensator.lab.effects.catalogue import default_effects, effect_named
-from compensator.lab.effects.effect import SESSION_START, Effect, Onset, Parameter
+from compensator.lab.effects.effect import Effect, Onset, Parameter
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, EffortQuantity, Facts
-from compensator.lab.recordings.recording import FloatArray, Recording
+from compensator.lab.recordings.recording import SESSION_START, FloatArray, Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Dataset, Processing
 from compensator.lab.rows.drivers import DRIVERS

@@ -28,6 +28,19 @@ def test_a_german_spreadsheet_comes_in_once_its_columns_are_confirmed(service, o
     assert trial["rows"] == 400
 
 
+def test_a_speed_of_the_motor_and_recordings_that_are_there_already_are_told(service, open_page):
+    for _ in range(2):
+        page = open_page("#trials")
+        page.get_by_text("Import a recording set, or files of any bench").click()
+        page.get_by_label("Recording set (.zip), or files").set_input_files([chosen("speed of the motor")])
+        page.get_by_role("button", name="Import", exact=True).click()
+        page.get_by_text("of the motor side, behind a gear of about 50").wait_for()
+        page.get_by_text("or choose not used for 'Drehzahl [U/min]'").wait_for()
+        page.get_by_role("button", name="These columns are right").click()
+        page.get_by_text("Imported 1 trials").wait_for()
+    page.get_by_text("has the same recordings already").wait_for()
+
+
 def test_a_question_is_asked_and_answered(service, open_page):
     page = open_page("#trials")
     page.get_by_text("Import a recording set, or files of any bench").click()

@@ -93,6 +93,12 @@ def test_a_guess_is_told_as_it_is_read(text: str) -> None:
     assert Guess.parse(text).text == text
 
 
+def test_the_words_that_are_no_effects_are_named_first() -> None:
+    assert Guess.parse("spring, none_of_these") == Guess.parse("spring,none-of-these")
+    with pytest.raises(ParameterError, match=r"^guess: wanted nothing, none-of-these or effects; "):
+        Guess.parse("none_of_them")
+
+
 def test_what_recordings_hold_next_to_nothing_of_is_said() -> None:
     truths = [Truth("spring", "a spring", 1.0, "stiffness", "1", share, {}) for share in (0.0, 4e-4, 6e-4)]
     assert remarks_on(truths[2:]) == []

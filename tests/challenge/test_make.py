@@ -14,8 +14,7 @@ from bench.evaluation.challenge.seal import SealError, digest_of, read_sealed
 from bench.evaluation.challenge.session import protocol_of, record
 from bench.evaluation.challenge.share import effort_share
 from bench.recording_set import read_recording_set
-from compensator.lab.effects.effect import SESSION_START
-from compensator.lab.recordings.recording import Condition, Recording
+from compensator.lab.recordings.recording import SESSION_START, Condition, Recording
 
 SEED = 987_654_321
 

@@ -2,6 +2,8 @@
 
 import json
 
+from bench.runs import scope
+
 
 def test_it_says_what_the_drive_is_and_moves_nothing(command):
     found = command("doctor", "--json")
@@ -25,6 +27,13 @@ def test_the_move_is_an_experiment_on_record(command):
     )
 
 
+def test_it_ends_with_the_setting_that_is_to_be_added(command, monkeypatch):
+    assert "To be added" not in command("doctor").output
+    monkeypatch.setattr(scope, "setting_to_add", lambda *_: "set rated_current_a in [drive]")
+    said = command("doctor").output.splitlines()
+    assert said[-1] == "To be added to the bench's file: set rated_current_a in [drive]."
+
+
 def test_a_zero_needs_a_drive_on_a_wire(command):
     found = command("doctor", "--set-zero")
     assert found.exit_code == 3
@@ -34,6 +43,6 @@ def test_a_zero_needs_a_drive_on_a_wire(command):
 def test_it_says_what_can_be_compensated_and_what_cannot(command):
     found = command("doctor")
     assert "What can be compensated here, and what cannot" in found.output
-    scope = json.loads(command("doctor", "--json").stdout)["scope"]
-    assert {one["answer"] for one in scope} <= {"yes", "in part", "no"}
-    assert all(one["what"] and one["why"] for one in scope)
+    rows = json.loads(command("doctor", "--json").stdout)["scope"]
+    assert {one["answer"] for one in rows} <= {"yes", "in part", "no"}
+    assert all(one["what"] and one["why"] for one in rows)

@@ -1,13 +1,14 @@
 """`friction-bench import --guess` and `explain` on files that nobody described."""
 
 import json
+import shlex
 from math import sin
 
 import numpy as np
 import pytest
 
-from bench.recording_set import read_rig
-from tests.recording_set.foreign_files import FILES
+from bench.recording_set import read_mapping, read_recording_set, read_rig
+from tests.recording_set.foreign_files import COLUMNS, FILES, POSITION_RAD, TIME_S, VELOCITY_RAD_S, motor_side, rows
 
 
 def test_a_guess_is_shown_written_and_can_be_imported(command, tmp_path):
@@ -63,6 +64,23 @@ def test_load_and_rig_are_told_by_what_a_guess_left_as_comments(command, tmp_pat
     assert read_rig(tmp_path / "rig.toml").gear.ratio == 20
 
 
+def test_repeats_that_do_not_move_alike_are_warned_of(command, tmp_path):
+    for name, position in (("one", POSITION_RAD), ("two", POSITION_RAD), ("other", VELOCITY_RAD_S[::-1])):
+        (tmp_path / f"{name}.csv").write_text(rows({**COLUMNS, "position_rad": position}))
+    (tmp_path / "rig.toml").write_text('name = "arm"\n')
+    for names, warned in ((["one.csv", "two.csv"], False), (["one.csv", "two.csv", "other.csv"], True)):
+        told = [f'[[trials]]\nfile = "{name}"\nconditions = {{ repeat = 1 }}\n' for name in names]
+        (tmp_path / "repeats.toml").write_text("".join(told))
+        made = command("import", *names, "--mapping", "repeats.toml", "--rig", "rig.toml")
+        assert made.exit_code == 0, made.output
+        said = " ".join(made.stdout.split())
+        assert ("are told as repeats of each other, and their motions differ" in said) == warned
+    guessed = command("import", "--guess", "one.csv", "--mapping", "new.toml", "--rig", "rig.toml")
+    assert guessed.exit_code == 0, guessed.output
+    for condition in ("waveform", "repeat", "session_s"):
+        assert f"#   {condition} = " in (tmp_path / "new.toml").read_text()
+
+
 def test_files_whose_columns_differ_are_guessed_one_by_one(command, tmp_path):
     (tmp_path / "log1.csv").write_bytes(FILES["german excel, utf-8 mark"].data)
     (tmp_path / "log2.csv").write_bytes(FILES["plain"].data.replace(b"time_s", b"clock"))
@@ -71,6 +89,20 @@ def test_files_whose_columns_differ_are_guessed_one_by_one(command, tmp_path):
     assert "log2.csv has other columns" in result.stderr.replace("\n", " ")
     assert "guessed one by one" in result.stderr.replace("\n", " ")
     assert not (tmp_path / "mapping.toml").exists()
+
+
+@pytest.mark.parametrize(("ratio", "words"), [(50.0, []), (60.3, ["--rig", "mine.toml"])])
+def test_a_speed_of_the_motor_is_told_and_its_mapping_can_be_imported(command, tmp_path, ratio, words):
+    (tmp_path / "log.csv").write_bytes(motor_side(ratio))
+    (tmp_path / "mine.toml").write_text(f'name = "arm"\n[gear]\nratio = {ratio}\n')
+    guessed = command("import", "--guess", "log.csv", *words)
+    assert guessed.exit_code == 0, guessed.output
+    assert f"that speed is of the motor side, behind a gear of about {ratio:g}" in " ".join(guessed.stdout.split())
+    assert read_mapping(tmp_path / "mapping.toml").columns["velocity_rad_s"].scale == 1.0 / ratio
+    assert command("import", "log.csv", "--mapping", "mapping.toml", "--rig", "mine.toml").exit_code == 0
+    assert command("export", 1, "set").exit_code == 0
+    (recording,) = read_recording_set(tmp_path / "set").recordings
+    np.testing.assert_allclose(recording.channels["velocity_rad_s"], VELOCITY_RAD_S, atol=1e-4)
 
 
 def test_what_is_not_sure_is_asked_and_nothing_is_written(command, tmp_path):
@@ -90,6 +122,32 @@ def test_an_answer_that_is_none_is_explained(command, tmp_path, take):
     result = command("import", "--guess", "log.csv", "--take", take)
     assert result.exit_code == 3
     assert "--take" in result.stderr
+
+
+def test_the_command_that_a_guess_ends_with_imports_what_it_guessed(command, tmp_path):
+    names = [f"log {number} of a long afternoon at the bench.csv" for number in range(8)]
+    for name in names:
+        (tmp_path / name).write_bytes(FILES["german excel, utf-8 mark"].data)
+    guessed = command("--store", "other.sqlite", "import", "--guess", *names)
+    [line] = [line for line in guessed.stdout.splitlines() if line.startswith("then: friction-bench ")]
+    made = command(*shlex.split(line.removeprefix("then: friction-bench ")), "--json")
+    assert made.exit_code == 0, made.output
+    assert json.loads(made.stdout)["trials"] == len(names)
+
+
+def test_the_same_recordings_are_told_when_they_come_in_again(command, tmp_path):
+    (tmp_path / "log.csv").write_bytes(FILES["degrees and rpm"].data)
+    assert command("import", "--guess", "log.csv").exit_code == 0
+    words = ["import", "log.csv", "--mapping", "mapping.toml", "--rig", "rig.toml"]
+    assert command(*words).stderr == ""
+    mapping = tmp_path / "mapping.toml"
+    mapping.write_text(mapping.read_text().replace('unit = "rpm"', 'unit = "rpm"\nscale = 1.01'))
+    assert "experiment 1 has the same recordings already" in command(*words, "--json").stderr
+    for factor in (1.0, 1.1):  # another recording under the same name, as long as the first
+        measured = {"position_rad": factor * POSITION_RAD, "current_a": TIME_S + factor}
+        (tmp_path / "else.csv").write_text(rows({**COLUMNS, **measured}))
+        assert command("import", "else.csv", "--rig", "rig.toml").stderr == ""
+    assert len(json.loads(command("experiments", "--json").stdout)) == 4
 
 
 def test_a_report_is_not_written_over(command, tmp_path):
@@ -156,6 +214,11 @@ def test_a_joint_that_never_slid_is_reported_and_not_refused(command, tmp_path):
     assert "springs back, with 150 N m/rad" in result.stdout
     assert "breakaway lies beyond that" in result.stdout
     assert "Effort over position" in (tmp_path / "explain-push.html").read_text()
+    again = command("explain", "push.csv")
+    assert again.exit_code == 0, again.output
+    assert "written: explain-push-2.html" in again.stdout
+    assert "experiment 1 has the same recordings already" in again.stderr
+    assert (tmp_path / "explain-push-2.html").exists()
     assert json.loads(command("study", "list", "--json").stdout) == []
 
 

@@ -51,7 +51,11 @@ def test_from_trials_to_an_error_that_falls(command, tmp_path):
     assert beside.exit_code == 0, beside.output
     assert "What 3 units have in common" in beside.stdout
     assert "None of the 3 units is shown to be an outlier." in beside.stdout
-    assert command("study", "units", study, others[0]).exit_code == 3
+    two = command("study", "units", study, others[0])
+    assert two.exit_code == 0, two.output
+    assert "90 %" in two.stdout
+    assert "two cannot tell" in " ".join(two.stdout.split())
+    assert command("study", "units", study, study).exit_code == 3
     refused = command("study", "suggest", study)
     assert refused.exit_code == 3
     assert "of another rig than this bench" in refused.stderr

@@ -152,6 +152,12 @@ def _text_files() -> dict[str, Foreign]:
     }  # fmt: skip
 
 
+def motor_side(ratio: float) -> bytes:
+    """An angle of the joint beside the speed of a motor in front of its gear."""
+    rpm = VELOCITY_RAD_S * ratio * 60.0 / (2.0 * np.pi)
+    return _text({"t [s]": TIME_S, "Winkel [deg]": DEGREES, "Drehzahl [U/min]": rpm, "I [A]": CURRENT_A})
+
+
 def _units() -> dict[str, Foreign]:
     speed = {"velocity_rad_s": VELOCITY_RAD_S}
     both = {**TRUTH, **speed}
@@ -178,6 +184,18 @@ def _units() -> dict[str, Foreign]:
         "units that deny each other": Foreign("a.csv", _text({
             "t": TIME_S, "pos_rad": DEGREES, "vel_rad_s": VELOCITY_RAD_S, "i": CURRENT_A}),
             asks="times as fast as 'vel_rad_s'"),
+        "speed of the motor": Foreign("a.csv", motor_side(50.0), truth=both),
+        "speed of the motor, half a ratio": Foreign("a.csv", motor_side(4.5), truth=both),
+        "speed of the motor behind a gear that could be a unit": Foreign(
+            "a.csv", motor_side(60.0), asks="--take 'Winkel .deg.=position.deg.'"),
+        "speed of the motor behind a gear that could be a unit, said": Foreign(
+            "a.csv", motor_side(60.0), known=Known(read_said(["Winkel [deg]=position[deg]"])), truth=both),
+        "speed of the motor behind the gear of a rig": Foreign(
+            "a.csv", motor_side(60.3), known=Known({}, gear_ratio=60.3), truth=both),
+        "speed of nothing known": Foreign("a.csv", motor_side(2.3), asks="changes 0.435 times as fast"),
+        "speed of nothing known, said": Foreign(
+            "a.csv", motor_side(2.3), known=Known(read_said(["Winkel [deg]=position[deg]"])),
+            truth={**TRUTH, "velocity_rad_s": 2.3 * VELOCITY_RAD_S}),
         "counts, not told": Foreign("a.csv", _text({"t": TIME_S, "enc": COUNTS, "i": CURRENT_A}),
                                     asks="--counts-per-turn"),
         "counts": Foreign("a.csv", _text({"t": TIME_S, "enc": COUNTS, "i": CURRENT_A}),

@@ -6,7 +6,7 @@ from math import asin, nan
 import pytest
 
 from bench.config.configuration import default_configuration, parse_configuration
-from bench.runs.scope import Answer, scope_of
+from bench.runs.scope import Answer, scope_of, setting_to_add
 from drivers.contract import Description, Mode, Untold
 
 
@@ -59,6 +59,15 @@ def test_what_the_drive_lacks_is_named_in_every_row_that_it_would_open():
     rows = (COMPENSATION, "friction at rest", "friction in motion", WEIGHT, "free play of the gear")
     assert [name for name in rows if untold.remedy not in found[name].why] == []
     assert "nothing can be added" not in found[COMPENSATION].why
+
+
+def test_the_setting_that_is_to_be_added_is_told_by_itself():
+    untold = Untold("set rated_current_a in [drive]", tells=True, takes=False)
+    assert setting_to_add(joint(), drive()) == ""
+    assert setting_to_add(joint(), replace(drive(), untold=untold)) == untold.remedy
+    bare = joint(rig={"motor": {}})
+    assert "back_emf_v_s_rad in [rig.motor]" in setting_to_add(bare, drive())
+    assert setting_to_add(bare, drive(measured=("position_rad",))) == ""  # no setting would help
 
 
 def test_a_drive_that_takes_positions_alone_says_so_whatever_would_let_it_tell_its_current():

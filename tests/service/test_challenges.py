@@ -53,6 +53,10 @@ def test_a_right_guess_is_right_and_a_wrong_one_tells_what_was_missed(service, c
     assert right["perfect"]
     assert right["right"] == first["missed"]
     assert "just that" in right["sentence"]
+    again = service.client.post(path, json={"guess": right["guessed"]})  # as an answer has it: a list
+    assert (again.status_code, again.json()) == (200, right)
+    assert service.client.post(path, json={"guess": []}).json() == first
+    assert service.client.post(path, json={"guess": ["spring,nothing"]}).status_code == 422
 
 
 def test_what_cannot_be_revealed_says_why(service, challenge):

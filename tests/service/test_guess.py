@@ -26,6 +26,8 @@ def test_a_german_spreadsheet_is_guessed_and_comes_in_with_that_mapping(service)
     whole = zipped(a__csv=data, mapping__toml=guessed["mapping"], rig__toml=guessed["rig"])
     made = service.client.post("/recording-sets?name=x", content=whole, headers=TYPE)
     assert (made.status_code, made.json()["rows"]) == (201, 400)
+    again = service.client.post("/recording-sets?name=y", content=whole, headers=TYPE).json()
+    assert f"experiment {made.json()['experiment_id']} has the same recordings already" in again["notes"][-1]
 
 
 def test_what_is_not_sure_is_asked_and_can_be_answered(service):

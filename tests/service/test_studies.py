@@ -154,5 +154,8 @@ def test_units_of_one_kind_stand_beside_each_other(service, study, experiment_id
     coulomb = next(one for one in found["parameters"] if one["effect"] == "coulomb")
     assert [one["study_id"] for one in coulomb["values"]] == [study["study_id"], *beside]
     assert coulomb["next_low"] <= coulomb["mean"] <= coulomb["next_high"]
-    assert service.stranger.get(path, params={"beside": beside[:1]}).status_code == 422
+    two = service.stranger.get(path, params={"beside": beside[:1]}).json()
+    assert all(one["low"] <= one["difference"] <= one["high"] for one in two["differences"])
+    assert two["differences"]
+    assert service.stranger.get(path).status_code == 422
     assert service.stranger.get(path, params={"beside": [beside[0], 999]}).status_code == 404

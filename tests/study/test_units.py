@@ -85,9 +85,24 @@ def test_effects_with_shapes_are_fitted_at_the_same_shapes(store, study_ids):
     assert compare_units(store, study_ids[0], study_ids[1:4], base).effects == MODEL
 
 
+def test_of_two_units_the_differences_are_told(store, study_ids, joints):
+    found = compare_units(store, study_ids[0], [study_ids[ODD]])
+    assert found.parameters == []
+    assert len(found.notes) == 1
+    told = {one.effect: one for one in found.differences}
+    assert list(told) == MODEL
+    coulomb, truth = told["coulomb"], joints[ODD].coulomb - joints[0].coulomb
+    assert coulomb.low < truth < coulomb.high
+    assert coulomb.low > 0.0
+    assert coulomb.difference == pytest.approx(coulomb.second - coulomb.first)
+    assert coulomb.name in found.sentence
+    assert told["inertia"].low < 0.0 < told["inertia"].high  # the same in both
+    assert "two cannot tell" in found.sentence
+
+
 def test_too_few_units_and_other_kinds_are_refused(store, study_ids):
-    with pytest.raises(StudyError, match="2 units"):
-        compare_units(store, study_ids[0], [study_ids[1], study_ids[1]])
+    with pytest.raises(StudyError, match="1 unit; to see a difference takes 2"):
+        compare_units(store, study_ids[0], [study_ids[0]])
     lying = RIG.model_copy(update={"horizontal": True})
     experiment = imported(store, plans(loads_kg=(0.1,)), TYPE, rig=lying, bench=SHORT)
     other = create_study(store, "lying", [experiment], base=["inertia", "coulomb", "viscous"], cutoff_hz=6.0).study_id

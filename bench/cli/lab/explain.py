@@ -1,6 +1,7 @@
 """`friction-bench explain FILE...`: from files of any bench to a report that says what the model lacks."""
 
 import re
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -8,7 +9,7 @@ import typer
 
 from bench.cli.bench_session import session_of
 from bench.cli.output import FileError, Json, console, percent, print_json, say, table, write_whole
-from bench.cli.records.guessed import CountsPerTurn, RateHz, SupplyV, Take, known_of, show
+from bench.cli.records.guessed import CountsPerTurn, RateHz, SupplyV, Take, known_of, remark_imported_before, show
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from rich.progress import Progress
@@ -17,6 +18,7 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.report import Section
     from bench.study.models.ladder import Rung
 
+_REPORT = "Report to write; without it explain-NAME.html, or explain-NAME-2.html and so on where that is there."
 _HOLD_OUT = "Trials that judge the model instead of being fitted; repeatable. Without it, each is left out in turn."
 
 
@@ -32,7 +34,10 @@ def explain(
     rate_hz: RateHz = None,
     supply_v: SupplyV = None,
     hold_out: Annotated[list[str] | None, typer.Option(metavar="KEY=VALUE", help=_HOLD_OUT)] = None,
-    html: Annotated[Path | None, typer.Option(help="Report to write; without it explain-NAME.html.")] = None,
+    html: Annotated[
+        Path | None,
+        typer.Option(help=_REPORT),
+    ] = None,
     name: Annotated[str | None, typer.Option(help="Name; without it, that of the files.")] = None,
     as_json: Json = False,
 ) -> None:
@@ -48,7 +53,7 @@ def explain(
     known = known_of(take, counts_per_turn, rate_hz, supply_v)
     recordings, guess = read_unknown(path, chosen_rig, known, None if mapping is None else read_mapping(mapping))
     called = name or recordings.name
-    report = html or Path(f"explain-{re.sub(r'[^A-Za-z0-9._-]+', '-', called)}.html")
+    report = html or _free(f"explain-{re.sub(r'[^A-Za-z0-9._-]+', '-', called)}")
     if report.exists():
         raise FileError(f"{report}: is there already; name another file with --html, or remove it")
     if guess is not None and not as_json:
@@ -57,6 +62,7 @@ def explain(
         for note in recordings.notes:
             say(note)
     with session_of(context).open_store() as store, _progress(hidden=as_json) as bar:
+        remark_imported_before(store, recordings)
         task = bar.add_task("import", total=len(STEPS) + 1)
         experiment_id = import_recording_set(store, recordings, called)
 
@@ -95,6 +101,12 @@ def explain(
     if count := len(found.not_judged):
         say(f"{count} {'effect was' if count == 1 else 'effects were'} not judged: see the report.")
     say(f"written: {report}; kept as study {found.study_id}")
+
+
+def _free(stem: str) -> Path:
+    """A place for a report: the first of STEM.html, STEM-2.html, STEM-3.html, .. that is free."""
+    places = (Path(f"{stem}{'' if number == 1 else f'-{number}'}.html") for number in count(1))
+    return next(place for place in places if not place.exists())
 
 
 def _say_what_holds(sentence: str, report: Path, experiment_id: int, as_json: bool) -> None:

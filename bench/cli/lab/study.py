@@ -180,7 +180,10 @@ def units_command(
     model: Model = None,
     as_json: Json = False,
 ) -> None:
-    """Units of one kind, fitted with the study's model: what is common, how they scatter, which is an outlier."""
+    """Units of one kind, fitted with the study's model: what is common, how they scatter, which is an outlier.
+
+    Of two units: by how much each parameter differs, with its 90 % interval.
+    """
     from bench.study.units import compare_units
 
     _show(context, as_json, study_tables.units, compare_units, study, beside, model)

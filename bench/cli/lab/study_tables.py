@@ -131,7 +131,31 @@ def refitted(found: "Refitted") -> None:
 
 
 def units(found: "UnitComparison") -> None:
-    """What units have in common, and each unit that stands out or has the largest deviation."""
+    """What units have in common, and each unit that stands out or has the largest deviation; of two, what differs."""
+    if found.differences:
+        _two_units(found)
+    else:
+        _many_units(found)
+    errors = [(one.study_id, one.name, one.trials, percent(one.error)) for one in found.units]
+    table("Units", ["study#", "name", "trials#", "error#"], errors)
+    if found.undetermined:
+        fewest = "two" if found.differences else "three"
+        say(f"determined by the trials of fewer than {fewest} units: {'; '.join(found.undetermined)}")
+    for sentence in (*found.notes, found.sentence):
+        say(sentence)
+
+
+def _two_units(found: "UnitComparison") -> None:
+    first, second = (one.name for one in found.units)
+    rows = [
+        (one.name, one.first, one.second, one.difference, _interval(one.low, one.high), one.unit)
+        for one in found.differences
+    ]
+    columns = ["parameter", f"{first}#", f"{second}#", "difference#", "90 %#", "unit"]
+    table(f"{second} beside {first}", columns, rows)
+
+
+def _many_units(found: "UnitComparison") -> None:
     rows = [
         (
             one.name,
@@ -153,12 +177,6 @@ def units(found: "UnitComparison") -> None:
     )
     shown = [row for one in found.parameters for row in _unit_rows(one)]
     table("Unit by unit", ["parameter", "unit", "value#", "beside the others#", "95 %#", "expected#", "p#", ""], shown)
-    errors = [(one.study_id, one.name, one.trials, percent(one.error)) for one in found.units]
-    table("Units", ["study#", "name", "trials#", "error#"], errors)
-    if found.undetermined:
-        say(f"determined by the trials of fewer than three units: {'; '.join(found.undetermined)}")
-    for sentence in (*found.notes, found.sentence):
-        say(sentence)
 
 
 def _unit_rows(found: "UnitParameter") -> list[tuple[object, ...]]:

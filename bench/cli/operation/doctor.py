@@ -44,7 +44,7 @@ def doctor(
     of bench.toml or of gear, sensor or motor of the rig. A new zero is no such change.
     """
     from bench.runs.connection import connect
-    from bench.runs.scope import scope_of
+    from bench.runs.scope import scope_of, setting_to_add
 
     session = session_of(context)
     found = connect(session.configuration())
@@ -64,12 +64,12 @@ def doctor(
     passed = _home(session, found, doubt, operator, answer, as_json) if home else True
     if move and passed:
         passed = _move(session, operator, answer, as_json)
-    elif home:
-        pass
-    elif not as_json:
+    elif not home and not as_json:
         say(session.in_full(_NEXT))
     if as_json:
         print_json(answer)
+    elif lacking := setting_to_add(session.configuration(), found.description):
+        say(f"To be added to the bench's file: {lacking}.")
     if not passed:
         raise typer.Exit(ExitCode.NOT_COMPLETED)
 

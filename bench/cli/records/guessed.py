@@ -5,11 +5,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.cli.output import FileError, refuse_taken, say, table, write_whole
+from bench.cli.output import FileError, refuse_taken, remark, say, table, write_whole
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.config.rig import Rig
+    from bench.recording_set import RecordingSet
     from bench.recording_set.guess import Guess, Known
+    from bench.store import Store
 
 Take = Annotated[
     list[str] | None,
@@ -63,6 +65,14 @@ def write_guess(guess: "Guess", rig: "Rig | None", mapping_file: Path, rig_file:
     if rig is not None:
         write_whole(rig_file, [rig_text(rig).encode()])
         say(f"written: {rig_file}; add what is known of motor, gear and arm")
+
+
+def remark_imported_before(store: "Store", recordings: "RecordingSet") -> None:
+    """Say, on stderr, which experiment has these recordings already."""
+    from bench.recording_set import imported_before
+
+    for note in imported_before(store, recordings):
+        remark(note)
 
 
 def _picture(outline: tuple[float, ...]) -> str:

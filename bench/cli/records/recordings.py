@@ -1,17 +1,26 @@
 """`friction-bench export` and `import`: recording sets leave and enter."""
 
+import shlex
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from bench.cli.bench_session import session_of
+from bench.cli.bench_session import BenchSession, session_of
 from bench.cli.output import Json, print_json, say, write_whole
-from bench.cli.records.guessed import CountsPerTurn, RateHz, SupplyV, Take, known_of, show, write_guess
+from bench.cli.records.guessed import (
+    CountsPerTurn,
+    RateHz,
+    SupplyV,
+    Take,
+    known_of,
+    remark_imported_before,
+    show,
+    write_guess,
+)
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
-    from bench.config.rig import Rig
     from bench.recording_set.guess import Known
 
 _GUESS = (
@@ -82,10 +91,11 @@ def import_(
         read_ros2_bags,
     )
 
-    chosen_rig = None if rig is None else read_rig(rig)
     if guess:
-        _guess(path, chosen_rig, known_of(take, counts_per_turn, rate_hz, supply_v), mapping or Path("mapping.toml"))
+        known = known_of(take, counts_per_turn, rate_hz, supply_v)
+        _guess(session_of(context), path, rig, known, mapping or Path("mapping.toml"))
         return
+    chosen_rig = None if rig is None else read_rig(rig)
     if joint and chosen_rig is not None and mapping is None and len(path) == 1:
         recording_set = read_ros2_bags(path[0], chosen_rig, joint, effort.value, topic)
     elif joint:
@@ -94,6 +104,7 @@ def import_(
         chosen_mapping = None if mapping is None else read_mapping(mapping)
         recording_set = read_recording_set(path, chosen_mapping, chosen_rig)
     with session_of(context).open_store() as store:
+        remark_imported_before(store, recording_set)
         experiment_id = import_recording_set(store, recording_set, name or recording_set.name)
     rows = sum(len(recording) for recording in recording_set.recordings)
     trials = len(recording_set.recordings)
@@ -105,15 +116,18 @@ def import_(
     say(f"imported as experiment {experiment_id}: {trials} trials, {rows} rows")
 
 
-def _guess(paths: list[Path], rig: "Rig | None", known: "Known", mapping_file: Path) -> None:
+def _guess(session: BenchSession, paths: list[Path], rig: Path | None, known: "Known", mapping_file: Path) -> None:
     """Show what the columns are taken for; write mapping and rig where nothing is left to be asked."""
+    from bench.recording_set import read_rig
     from bench.recording_set.guess import check_answered, guess_of
 
-    found, assumed, notes = guess_of(paths, rig, known)
+    found, assumed, notes = guess_of(paths, None if rig is None else read_rig(rig), known)
     show(found, notes)
     check_answered(found)
     rig_file = mapping_file.with_name("rig.toml")
     needs_rig = rig is None and not (paths[0] / "rig.toml").exists()
     write_guess(found, assumed if needs_rig else None, mapping_file, rig_file)
-    which = " ".join(map(str, paths))
-    say(f"then: friction-bench import {which} --mapping {mapping_file} --rig {rig_file if needs_rig else 'RIG'}")
+    words = [*map(str, paths), "--mapping", str(mapping_file)]
+    if named := rig_file if needs_rig else rig:
+        words += ["--rig", str(named)]
+    say(session.in_full(f"then: friction-bench import {shlex.join(words)}"))

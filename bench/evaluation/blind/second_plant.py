@@ -9,8 +9,7 @@ from math import log
 import numpy as np
 
 from bench.config.rig import Arm, Gear, Motor, Rig, Sensor, Supply
-from compensator.lab.effects.effect import SESSION_START
-from compensator.lab.recordings.recording import Condition, Recording
+from compensator.lab.recordings.recording import SESSION_START, Condition, Recording
 from sim_backend.second_plant.draw import draw_joint
 from sim_backend.second_plant.foreign_mechanisms import FOREIGN
 from sim_backend.second_plant.joint import MECHANISMS, DrawnJoint, Level

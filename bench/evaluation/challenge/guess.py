@@ -13,6 +13,7 @@ from compensator.lab.errors import UnknownEffectError
 
 NOTHING = "nothing"
 UNKNOWN = "none-of-these"
+UNKNOWN_TOO = "none_of_these"  # as effects are spelt
 OUTSIDE = ("unknown-effect", "unexplained")  # what a diagnosis concludes where something is left that has no name
 
 
@@ -30,16 +31,16 @@ class Guess:
 
     @classmethod
     def parse(cls, text: str) -> "Guess":
-        """Read `name[,name]`; `name/name` is a class; `nothing`; `none-of-these`.
+        """Read `name[,name]`; `name/name` is a class; `nothing`; `none-of-these`, which `none_of_these` means, too.
 
         Raises:
             ParameterError: an unknown name, or `nothing` beside something.
         """
-        parts = [part.strip() for part in text.split(",") if part.strip()]
+        parts = [UNKNOWN if part.strip() == UNKNOWN_TOO else part.strip() for part in text.split(",") if part.strip()]
         if not parts or (NOTHING in parts and len(parts) > 1):
             raise ParameterError(
-                f"guess is '{text}'; wanted effects such as spring,viscous_asymmetry, a class of effects such as "
-                f"spring/gravity, {NOTHING} or {UNKNOWN}"
+                f"guess is '{text}'; wanted {NOTHING}, {UNKNOWN}, effects such as spring,viscous_asymmetry, or a class "
+                "of effects such as spring/gravity"
             )
         named = [_known(tuple(part.split("/"))) for part in parts if part not in (NOTHING, UNKNOWN)]
         return cls.of(named, UNKNOWN in parts)
@@ -140,4 +141,6 @@ def _known(names: tuple[str, ...]) -> tuple[str, ...]:
     try:
         return tuple(effect_named(name.strip()).name for name in names)
     except UnknownEffectError as error:
-        raise ParameterError(f"guess: {error}; list them with: friction-bench effects") from error
+        raise ParameterError(
+            f"guess: wanted {NOTHING}, {UNKNOWN} or effects; {error}; list them with: friction-bench effects"
+        ) from error

@@ -16,6 +16,9 @@ NEAR = 0.1  # relative: how near a slope has to be to a unit's factor
 TOLD = 0.5  # squared correlation from which one column tells another's unit
 FEWEST = 20
 BLOCKS = 400  # of which rates are averaged: noise of one sample does no harm
+GEAR = 0.01  # relative: how near a ratio of two rates has to be to one of gears
+HALVES_TO = 50.0  # ratio up to which halves are told from whole numbers
+LARGEST_GEAR = 1000.0
 WHOLE = 0.999  # share of values that are whole numbers
 SAME = 0.02  # relative: how near a period has to be to a known one
 KNOWN_PERIODS = (360.0, 2.0 * np.pi, 1.0, 180.0, np.pi, *(float(2**bits) for bits in range(8, 25)))
@@ -63,6 +66,18 @@ def unit_by_slope(factor: float, units: Sequence[Unit]) -> Unit | None:
     """The unit whose SI factor is near to a slope; None where none is."""
     near = [unit for unit in units if abs(abs(factor) * unit.factor - 1.0) < NEAR]
     return near[0] if near else None
+
+
+def gear_behind(ratio: float, known: float | None) -> float | None:
+    """The gear ratio that a speed of the motor over that of the joint stands for; None where it is none.
+
+    Args:
+        ratio: of the two speeds, as measured.
+        known: ratio of the gear, where it is told; without it, a whole or half-whole number is looked for.
+    """
+    step = 0.5 if ratio <= HALVES_TO else 1.0
+    near = known if known is not None else round(ratio / step) * step
+    return near if 1.0 < near <= LARGEST_GEAR and abs(ratio / near - 1.0) < GEAR else None
 
 
 def are_whole(values: FloatArray) -> bool:

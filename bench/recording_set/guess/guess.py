@@ -84,12 +84,14 @@ class Known:
         counts_per_turn: of the joint.
         rate_hz: of the samples, where no column is a time.
         supply_v: where no column holds it.
+        gear_ratio: of the rig.
     """
 
     said: MappingOf[str, Said]
     counts_per_turn: float | None = None
     rate_hz: float | None = None
     supply_v: float | None = None
+    gear_ratio: float | None = None
 
 
 NOTHING = Known({})
@@ -104,7 +106,7 @@ def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
     """
     assigned = assign([sheet.columns for sheet in sheets], known.said)
     rate_hz = None if "time" in assigned.columns else known.rate_hz or sheets[0].rate_hz
-    units = Units([sheet.columns for sheet in sheets], assigned, known.counts_per_turn, rate_hz)
+    units = Units([sheet.columns for sheet in sheets], assigned, known.counts_per_turn, rate_hz, known.gear_ratio)
     made = {quantity: units.column_of(quantity, names) for quantity, names in assigned.columns.items()}
     columns = {units.channel_of(quantity): column for quantity, column in made.items() if column is not None}
     used = {name for column in columns.values() for name in column.sources}
@@ -197,12 +199,21 @@ def mapping_text(mapping: Mapping, notes: tuple[str, ...] = (), files: Sequence[
     return head + tomli_w.dumps(plain | tables) + _conditions_comment(files)
 
 
+CONDITIONS_COMMENT = """
+# Load and arm of each trial, where they are known. Conditions also tell, where it is so:
+#   waveform = "slow sine"   which motion it is
+#   repeat = 2               1, 2, .. of the trials that run one motion under equal conditions
+#   session_s = 300          from the start of the session to that of the trial: warm-up goes by it
+# Take the # away from all of these: all files are listed then.
+"""
+
+
 def _conditions_comment(files: Sequence[str]) -> str:
     if not files:
         return ""
     names = [json.dumps(file, ensure_ascii=False) for file in files]
     blocks = [f"# [[trials]]\n# file = {name}\n# conditions = {{ load_kg = 0.1, arm_m = 0.5 }}\n" for name in names]
-    return "\n# Load and arm of each trial, where they are known: all files are listed then.\n" + "".join(blocks)
+    return CONDITIONS_COMMENT + "".join(blocks)
 
 
 RIG_COMMENT = """

@@ -8,7 +8,7 @@ from bench.recording_set.checks import back_and_forth, question
 from bench.recording_set.formats.column_table import Columns
 from bench.recording_set.guess.assign import Assigned
 from bench.recording_set.guess.clock import clock_of
-from bench.recording_set.guess.evidence import NEAR, are_whole, period_of, slope, unit_by_slope
+from bench.recording_set.guess.evidence import NEAR, are_whole, gear_behind, period_of, slope, unit_by_slope
 from bench.recording_set.guess.names import UNITS_OF
 from bench.recording_set.mapping import Column
 from bench.recording_set.units import UNITS, Unit, unit_named
@@ -42,6 +42,7 @@ class Units:
         assigned: which column is which quantity.
         counts_per_turn: of the joint, where it is known.
         rate_hz: of the samples, where no column is a time.
+        gear_ratio: of the rig, where it is known.
 
     Attributes:
         clock: the time.
@@ -49,12 +50,20 @@ class Units:
         questions: what has to be asked; each names its option.
         notes: what was found besides.
         why: column -> why it has its unit, in words.
+        gear: ratio of the gear in front of which the speed is, of the motor; None where it is that of the joint.
     """
 
     def __init__(
-        self, files: Sequence[Columns], assigned: Assigned, counts_per_turn: float | None, rate_hz: float | None
+        self,
+        files: Sequence[Columns],
+        assigned: Assigned,
+        counts_per_turn: float | None,
+        rate_hz: float | None,
+        gear_ratio: float | None = None,
     ) -> None:
         self._files, self._assigned, self._counts = files, assigned, counts_per_turn
+        self._gear_ratio = gear_ratio
+        self.gear: float | None = None
         self.clock = clock_of(files, assigned, rate_hz)
         self.questions, self.notes, self.why = self.clock.questions, self.clock.notes, self.clock.why
         self._place = "m" if self._is_linear() else "rad"
@@ -77,7 +86,10 @@ class Units:
         period = self._period() if quantity in ("position", "target") else None
         said = self._assigned.said.get(names[0])
         sign_from = said.sign_from if said else None
-        return Column(source=names[0], unit=None if plain else unit.name, period=period, sign_from=sign_from)
+        scale = self._scale(quantity)
+        return Column(
+            source=names[0], unit=None if plain else unit.name, scale=scale, period=period, sign_from=sign_from
+        )
 
     def channel_of(self, quantity: str) -> str:
         """The name of a quantity's channel."""
@@ -129,6 +141,10 @@ class Units:
         self.why[name] = "its name"
         return unit
 
+    def _scale(self, quantity: str) -> float:
+        """What makes a value one of the joint, beside its unit."""
+        return 1.0 / self.gear if self.gear is not None and quantity == "velocity" else 1.0
+
     def _plain(self, quantity: str, si: str) -> Unit:
         self.why[self._name(quantity)] = _PLAIN
         return unit_named(si) or Unit(si, si)
@@ -158,7 +174,7 @@ class Units:
         if "target" in there and "target" not in told:
             self._units["target"] = self._units.get("position") or UNITS[self._place]
             self.why[self._name("target")] = "as the position"
-        self._check_rate(rate)
+        self._check_rate(rate, firm="velocity" in told and bool({"position", "target"} & told.keys()))
         if "position" in told:
             self._check_turns()
         counted = [one for one in there if self._units[one].counts]
@@ -209,20 +225,34 @@ class Units:
             self._ask("velocity", f"goes from {_range(values)}, without a unit", ("rpm", "deg/s", "rad/s"))
         return self._plain("velocity", f"{self._place}/s")
 
-    def _check_rate(self, rate: float | None) -> None:
-        """Two units that deny each other."""
+    def _check_rate(self, rate: float | None, firm: bool) -> None:
+        """Two units that deny each other, or a speed of the motor; `firm` where both units are told."""
         position, velocity = self._units.get("position"), self._units.get("velocity")
         if rate is None or position is None or velocity is None or position.counts or velocity.counts:
             return
         ratio = abs(rate) * position.factor / velocity.factor
-        if 1.0 / AGREE < ratio < AGREE or (self._is_sure("position") and self._is_sure("velocity")):
+        if 1.0 / AGREE < ratio < AGREE:
             return
+        gear = gear_behind(1.0 / ratio, self._gear_ratio) if firm else None
         near = unit_by_slope(rate / velocity.factor, _units_of(self._place))
-        wanted = [near.name, position.name] if near else ["deg", "rad"]
-        sentence = (
-            f"in {position.name} changes {ratio:.3g} times as fast as '{self._name('velocity')}' in {velocity.name}"
+        sure = self._is_sure("position") or (gear is not None and gear == self._gear_ratio)
+        name, speed = self._name("position"), self._name("velocity")
+        found = f"in {position.name} changes {ratio:.3g} times as fast as '{speed}' in {velocity.name}"
+        if gear is not None and (sure or near is None):
+            self._take_as_motor(gear, f"'{name}' {found}")
+        elif sure or self._is_sure("velocity"):
+            self.notes.append(f"'{name}' {found}: taken as said; --take '{speed}=ignore' leaves the speed out")
+        else:
+            self._ask("position", found, [near.name, position.name] if near else [position.name, "deg", "rad"])
+
+    def _take_as_motor(self, gear: float, found: str) -> None:
+        """The speed as one of the motor."""
+        name, self.gear = self._name("velocity"), gear
+        self.why[name] = f"{self.why[name]}; of the motor, behind a gear of about {gear:g}"
+        self.notes.append(
+            f"{found}: that speed is of the motor side, behind a gear of about {gear:g}, and is taken with scale = "
+            f"1/{gear:g}; correct the scale where the ratio is another, or say --take '{name}=ignore'"
         )
-        self._ask("position", sentence, wanted)
 
     def _check_turns(self) -> None:
         """Radians by name that look like degrees."""
@@ -240,7 +270,8 @@ class Units:
                 continue
             if self._is_sure(quantity) and quantity != "duty":
                 continue
-            low, high = sorted(unit.factor * one + unit.offset for one in found)
+            scale = unit.factor * self._scale(quantity)
+            low, high = sorted(scale * one + unit.offset for one in found)
             if asked := question(channel, high, low, CHANNELS[channel].unit):
                 sentence, _, other = asked.removeprefix(f"{channel} ").partition(". Is the column in ")
                 self._ask(quantity, sentence, (other,) if quantity == "duty" else (other, unit.name))

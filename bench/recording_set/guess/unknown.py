@@ -41,6 +41,8 @@ def guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Gues
         lists_trials = container.has(TRIALS_FILE)
     if known.counts_per_turn is None and own is not None and own.sensor.counts_per_turn is not None:
         known = replace(known, counts_per_turn=own.sensor.counts_per_turn * (own.gear.ratio or 1.0))
+    if own is not None and own.gear.ratio is not None:
+        known = replace(known, gear_ratio=own.gear.ratio)
     sheets, renamed, notes = read_sheets(paths)
     guess = guess_mapping(sheets, known)
     mapping = guess.mapping.model_copy(update={"trials_columns": renamed})

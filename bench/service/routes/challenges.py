@@ -24,6 +24,7 @@ if TYPE_CHECKING:  # imported when first needed
 
 router = api_router("/challenges", tags=["challenges"], dependencies=[Depends(allow_read)])
 ChallengeId = Annotated[int, Path(ge=1, description="number of the challenge, which is that of its experiment")]
+Part = Annotated[str, Field(min_length=1, max_length=1000, pattern=r"^[^,]+$")]
 Level = Literal["easy", "medium", "hard"]
 
 
@@ -57,10 +58,10 @@ class Reveal(BaseModel):
     """A guess: in words, or what a study amounts to."""
 
     model_config = ConfigDict(extra="forbid", json_schema_extra={"examples": [{"guess": "viscous_asymmetry"}]})
-    guess: str | None = Field(
+    guess: Annotated[str, Field(max_length=1000)] | Annotated[list[Part], Field(max_length=100)] | None = Field(
         default=None,
-        max_length=1000,
-        description="effects (spring,viscous_asymmetry), a class of them (spring/gravity), nothing or none-of-these",
+        description="nothing, none-of-these, effects (spring,viscous_asymmetry), a class of them (spring/gravity); "
+        "or a list of these, as `guessed` tells them, in which none is nothing",
     )
     study_id: int | None = Field(default=None, ge=1, description="take what this study added and last found")
 
@@ -144,7 +145,7 @@ def _reveal(store: Store, challenge_id: int, body: Reveal) -> Revealed:
     from bench.evaluation.challenge.share import remarks_on
 
     answer = answer_of(store, challenge_id)
-    guess = Guess.parse(body.guess) if body.guess is not None else guess_of_study(store, body.study_id or 0)
+    guess = guess_of_study(store, body.study_id or 0) if body.guess is None else Guess.parse(_text(body.guess))
     found = score([truth.name for truth in answer.truths], guess, ABSORBED)
     hidden = [
         Hidden(
@@ -169,6 +170,11 @@ def _reveal(store: Store, challenge_id: int, body: Reveal) -> Revealed:
         perfect=found.perfect,
         sentence=" ".join([_sentence(len(hidden), found), *remarks_on(answer.truths)]),
     )
+
+
+def _text(guess: str | list[str]) -> str:
+    """A guess as `Guess.parse` reads it."""
+    return guess if isinstance(guess, str) else ",".join(guess) or "nothing"
 
 
 def _sentence(hidden: int, found: "Score") -> str:

@@ -46,6 +46,10 @@ class Imported(BaseModel):
     name: str
     trials: int = Field(description="how many trials came in")
     rows: int = Field(description="how many rows came in, all trials together")
+    notes: list[str] = Field(
+        description="what is to be known of them: how files were read, what is not told, what is there already",
+        examples=[["experiment 4 has the same recordings already; they come in once more"]],
+    )
 
 
 class GuessedColumn(BaseModel):
@@ -183,9 +187,11 @@ async def _receive(chunks: AsyncIterator[bytes], path: Path) -> None:
 
 
 def _import(store: Store, path: Path, name: str) -> Imported:
-    from bench.recording_set import import_recording_set, read_recording_set
+    from bench.recording_set import import_recording_set, imported_before, read_recording_set
 
     recording_set = read_recording_set(path, None, None)
+    notes = [*recording_set.notes, *imported_before(store, recording_set)]
     experiment_id = import_recording_set(store, recording_set, name)
     rows = sum(len(recording) for recording in recording_set.recordings)
-    return Imported(experiment_id=experiment_id, name=name, trials=len(recording_set.recordings), rows=rows)
+    trials = len(recording_set.recordings)
+    return Imported(experiment_id=experiment_id, name=name, trials=trials, rows=rows, notes=notes)

@@ -51,6 +51,19 @@ class UnitParameter(StudyModel):
     values: list[UnitValue] = Field(description="of the units whose trials determine it")
 
 
+class UnitDifference(StudyModel):
+    """One parameter of two units, of which nobody can know how such units scatter."""
+
+    effect: str
+    name: str
+    unit: str
+    first: Number
+    second: Number
+    difference: Number = Field(description="of the second from the first")
+    low: Number = Field(description="of its 90 % interval")
+    high: Number
+
+
 class UnitComparison(StudyModel):
     """Units of one kind, fitted with the same model."""
 
@@ -59,6 +72,11 @@ class UnitComparison(StudyModel):
     cutoff_hz: float = Field(description="low-pass of all, the lowest of their studies [Hz]")
     units: list[Unit]
     parameters: list[UnitParameter]
-    undetermined: list[str] = Field(description="parameters that the trials of fewer than three units determine")
+    differences: list[UnitDifference] = Field(
+        default_factory=list, description="of two units, in the place of `parameters`", examples=[[]]
+    )
+    undetermined: list[str] = Field(
+        description="parameters that the trials of fewer than three units determine; of two, of fewer than both"
+    )
     sentence: str
     notes: list[str]

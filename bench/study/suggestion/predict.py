@@ -16,11 +16,10 @@ from bench.study.suggestion.options import Choice
 from bench.study.suggestion.twin import Twin
 from compensator.lab import progress
 from compensator.lab.diagnosis.diagnosis import Diagnosis
-from compensator.lab.effects.effect import SESSION_START
 from compensator.lab.model.fitted import Fit
 from compensator.lab.next_trial.suggest import suggest
 from compensator.lab.next_trial.suggestion import Option, Suggestion
-from compensator.lab.recordings.recording import Condition, Recording
+from compensator.lab.recordings.recording import SESSION_START, Condition, Recording
 from compensator.lab.rows.dataset import Dataset
 from drivers.errors import DriveError
 

@@ -1,6 +1,5 @@
 """Measured against predicted effort: errors by trial and regime, residual against every driver, repeatability floor."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Literal
@@ -9,12 +8,12 @@ import numpy as np
 
 from compensator.lab.at_rest.breakaway_comparison import BreakawayComparison, compare_breakaway
 from compensator.lab.at_rest.rest_comparison import RestComparison, compare_at_rest
-from compensator.lab.effects.effect import SESSION_START
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import HeldOut, relative_error, rms
 from compensator.lab.model.validation import held_out
-from compensator.lab.recordings.recording import BoolArray, Condition, IntArray
+from compensator.lab.recordings.recording import BoolArray, IntArray
 from compensator.lab.recordings.regimes import Regime
+from compensator.lab.recordings.repeats import repeats
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.rows.drivers import available
 from compensator.lab.rows.picture import BinnedMean, binned_mean
@@ -131,16 +130,8 @@ def _error(fit: Fit, name: str, rows: BoolArray) -> ErrorOf:
 
 
 def _repeats(dataset: Dataset) -> list[tuple[int, int]]:
-    groups: dict[tuple[object, ...], list[int]] = {}
-    for index, trial in enumerate(dataset.trials):
-        recording = trial.signals.recording
-        if "repeat" not in recording.conditions:
-            continue
-        conditions: Sequence[tuple[str, Condition]] = sorted(
-            (key, value) for key, value in recording.conditions.items() if key not in ("repeat", "rows", SESSION_START)
-        )
-        groups.setdefault((recording.kind, *conditions), []).append(index)
-    return [pair for members in groups.values() for pair in combinations(members, 2)]
+    recordings = [trial.signals.recording for trial in dataset.trials]
+    return [pair for members in repeats(recordings) for pair in combinations(members, 2)]
 
 
 def _slots(dataset: Dataset, index: int) -> tuple[IntArray, IntArray]:

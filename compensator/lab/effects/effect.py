@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, EffortQuantity, Facts
-from compensator.lab.recordings.recording import Condition, FloatArray
+from compensator.lab.recordings.recording import SESSION_START, Condition, FloatArray
 from compensator.lab.recordings.reversals import Strokes, since_rest, strokes_of
 
 Shape = tuple[float, ...]
@@ -19,7 +19,6 @@ Round = Literal["force", "against the motion"]
 MOST_TURNS = (
     10.0  # over all trials: beyond, nothing winds up with the shaft, and its position is the time it has turned
 )
-SESSION_START = "session_s"  # condition: time from the start of the session to that of the trial [s]
 
 
 @dataclass(frozen=True)

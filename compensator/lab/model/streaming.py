@@ -11,14 +11,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from compensator.lab.effects.effect import SESSION_START
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import solve_without
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.low_pass import FILTER_ORDER
 from compensator.lab.recordings.processing import EDGE_PERIODS
-from compensator.lab.recordings.recording import BoolArray, Condition, FloatArray, Recording
+from compensator.lab.recordings.recording import SESSION_START, BoolArray, Condition, FloatArray, Recording
 from compensator.lab.rows.assembly import more_trials
 
 PIECE_ROWS = 200_000

@@ -68,6 +68,7 @@ CHANNELS: dict[str, Channel] = {
     )
 }
 EVENT_COLUMN = "event"
+SESSION_START = "session_s"  # condition: time from the start of the session to that of the trial [s]
 
 
 class Event(NamedTuple):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from compensator.lab import progress
-from compensator.lab.effects.effect import SESSION_START, Motion
+from compensator.lab.effects.effect import Motion
 from compensator.lab.errors import NeverSlidesError, UnusableDataError
 from compensator.lab.recordings.bandwidth import choose_cutoff_hz
 from compensator.lab.recordings.channel_checks import check_channels
@@ -14,7 +14,7 @@ from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.processing import DIFFERENTIATION_FACTOR, SATURATED_DUTY, Signals, make_signals
 from compensator.lab.recordings.pushed import pushed
-from compensator.lab.recordings.recording import FloatArray, Recording
+from compensator.lab.recordings.recording import SESSION_START, FloatArray, Recording
 from compensator.lab.recordings.regimes import Regime, classify, near_flank_change
 from compensator.lab.rows.dataset import Dataset, Processing, Scales, Trial
 

@@ -1,17 +1,15 @@
 """What recordings hold, before anything is fitted: directions, speeds, loads, temperatures, repeats."""
 
-from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.effects.effect import SESSION_START
 from compensator.lab.recordings.driven import driven_from_outside
 from compensator.lab.recordings.recording import FloatArray, Recording
 from compensator.lab.recordings.regimes import Regime
+from compensator.lab.recordings.repeats import repeats
 from compensator.lab.rows.dataset import Dataset, Trial
 
-NOT_CONDITIONS = ("repeat", "rows", SESSION_START)  # trials that differ by these alone repeat each other
 ONE_WAY = 0.05  # share of the rows in the rarer direction, below which there is one direction
 
 
@@ -80,7 +78,7 @@ def coverage_of(dataset: Dataset) -> Coverage:
         one_way=max(_one_way(trial.motion.position) for trial in dataset.trials),
         loads_kg=_loads_kg(recordings),
         temperature_c=(float(warmth.min()), float(warmth.max())) if len(warmth) and np.isfinite(warmth).all() else None,
-        repeats=_repeats(recordings),
+        repeats=sum(map(len, repeats(recordings))),
         driven_s=sum(_driven_s(trial) for trial in dataset.trials),
         usable=float(np.mean(np.concatenate([trial.signals.usable for trial in dataset.trials]))),
     )
@@ -94,15 +92,6 @@ def _one_way(position: FloatArray) -> float:
 def _loads_kg(recordings: list[Recording]) -> tuple[float, ...]:
     told = (one.conditions.get("load_kg") for one in recordings)
     return tuple(sorted({float(load) for load in told if isinstance(load, int | float)}))
-
-
-def _repeats(recordings: list[Recording]) -> int:
-    keys = [
-        (one.kind, *sorted((key, str(value)) for key, value in one.conditions.items() if key not in NOT_CONDITIONS))
-        for one in recordings
-        if "repeat" in one.conditions
-    ]
-    return sum(count for count in Counter(keys).values() if count > 1)
 
 
 def _driven_s(trial: Trial) -> float:

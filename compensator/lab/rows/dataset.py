@@ -413,7 +413,7 @@ class Dataset:
                 raise NotApplicableError(f"{effect.name} needs channel {channel} in every trial; record it")
         if effect.varies_with and not self._varies(effect.varies_with):
             lacks = f"no trial tells it; put it into trials.csv where it was known, or record {effect.excited_by}"
-            if effect.varies_with != "load_kg" or self._is_told("load_kg"):
+            if effect.varies_with == "temperature_c" or self._is_told(effect.varies_with):
                 lacks = f"it does not; record {effect.excited_by}"
             raise NotApplicableError(f"{effect.name} needs {effect.varies_with} to differ over the data, and {lacks}")
 

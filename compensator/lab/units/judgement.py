@@ -4,10 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import stdtrit
 
 from compensator.lab.units.outliers import ALARM, Deviation, corrected_by_holm, deviations
 from compensator.lab.units.quantities import Quantity
-from compensator.lab.units.random_effects import Common, chance_of_one_value, common_of
+from compensator.lab.units.random_effects import Common, UnitValues, chance_of_one_value, common_of
+
+PAIR = 2
+PAIR_UPPER = 0.95  # of the interval of a difference, which holds with 90 %
 
 
 @dataclass(frozen=True)
@@ -41,3 +45,14 @@ def judge(quantities: Sequence[Quantity]) -> list[Judged]:
         Judged(quantity, common_of(kept), chance, chance < ALARM, found)
         for quantity, kept, chance, found in zip(quantities, inside, chances, beside, strict=True)
     ]
+
+
+def difference(pair: UnitValues) -> tuple[float, float, float]:
+    """The second of two units less the first, and the ends of its 90 % interval (Welch's t), in the quantity's unit.
+
+    It needs no scatter between units, and says nothing of it.
+    """
+    found, variance = float(pair.value[1] - pair.value[0]), pair.variance
+    freedom = float(variance.sum()) ** 2 / float((variance**2 / pair.freedom).sum())
+    half = float(np.sqrt(variance.sum()) * stdtrit(freedom, PAIR_UPPER))
+    return found, found - half, found + half

@@ -56,19 +56,20 @@ def unit_fit_of(fit: Fit) -> UnitFit:
     return UnitFit(fit.coefficients, error, parts - 1.0, kept & excited & np.isfinite(error))
 
 
-def quantities_of(fit: Fit, units: Sequence[UnitFit]) -> tuple[list[Quantity], list[str]]:
-    """Every coefficient that at least three units determine, and the names of those that fewer do.
+def quantities_of(fit: Fit, units: Sequence[UnitFit], fewest: int = FEWEST_UNITS) -> tuple[list[Quantity], list[str]]:
+    """Every coefficient that enough units determine, and the names of those that fewer do.
 
     Args:
         fit: of any of the units: its effects and units of measurement are those of all.
         units: all of them, fitted with the same effects and shapes.
+        fewest: how many units are enough.
     """
     unit, facts = fit.dataset.effort_definition.unit, fit.dataset.facts
     found, lacking = [], []
     named = [(term.effect, parameter) for term in fit.terms for parameter in term.effect.parameters]
     for index, (effect, parameter) in enumerate(named):
         inside = np.array([one.usable[index] for one in units])
-        if inside.sum() < FEWEST_UNITS:
+        if inside.sum() < fewest:
             lacking.append(f"{effect.name}, {parameter.name}")
             continue
         chosen = [one for one in units if one.usable[index]]

@@ -118,6 +118,8 @@ def test_a_load_that_nobody_told_is_not_said_to_be_the_same():
     dataset = make_dataset(untold, FACTS, Processing(5.6))
     with pytest.raises(NotApplicableError, match="needs load_kg to differ over the data, and no trial tells it"):
         dataset.check_applicable(effect_named("weight_friction"))
+    with pytest.raises(NotApplicableError, match="needs session_s to differ over the data, and no trial tells it"):
+        dataset.check_applicable(effect_named("warm_up"))
 
 
 def test_what_is_withheld_is_no_candidate_and_comes_back():

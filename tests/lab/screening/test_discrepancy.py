@@ -8,12 +8,12 @@ import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import catalogue, default_effects, effect_named
-from compensator.lab.effects.effect import SESSION_START, Motion
+from compensator.lab.effects.effect import Motion
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import Term
 from compensator.lab.recordings.differentiation import rate_of_change
-from compensator.lab.recordings.recording import Recording
+from compensator.lab.recordings.recording import SESSION_START, Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.discrepancy import _carried, _misread, discrepancy_columns

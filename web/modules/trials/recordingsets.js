@@ -15,7 +15,8 @@ export function importForm(done, open = false) {
   const answer = h("div");
   const button = h("button", {}, "Import");
   const finish = (result) => {
-    replace(answer, h("div", { class: "good", role: "status" }, `Imported ${result.trials} trials as experiment ${result.experiment_id}.`));
+    replace(answer, h("div", { class: "good", role: "status" }, `Imported ${result.trials} trials as experiment ${result.experiment_id}.`),
+      result.notes.map((note) => h("p", { class: "hint" }, capital(note))));
     done(result);
   };
   const submit = async (event) => {
@@ -77,7 +78,7 @@ function columns(found, said, ask) {
       h("option", { value: "" }, now ? "as it was guessed" : channel || "not used"), ["ignore", ...offered].map((one) => h("option", { value: one, selected: one === now }, wordsOf(one))));
     return select;
   };
-  return h("div", {}, found.notes.map((note) => h("p", { class: "hint" }, note)), table("Columns", [
+  return h("div", {}, found.notes.map((note) => h("p", { class: "hint" }, asked(note))), table("Columns", [
     { title: "Column", cell: (one) => one.column },
     { title: "Taken for", cell: choice },
     { title: "In", cell: (one) => one.unit },
@@ -95,7 +96,7 @@ function wordsOf(quantity) {
 
 // the options of the command line, as one does the same here
 export function asked(question) {
-  return question.replace(/say --take|--take/g, "choose").replace(/'(\w+)=(\w+)\[([^\]]+)\]'/g, "$2 [$3] for '$1'").replace(/--([a-z]+(?:-[a-z]+)*)/g, (_, name) => name.replaceAll("-", " "));
+  return question.replace(/say --take|--take/g, "choose").replace(/'([^'=]+)=(\w+)\[([^\]]+)\]'/g, "$2 [$3] for '$1'").replace(/'([^'=]+)=ignore'/g, "not used for '$1'").replace(/--([a-z]+(?:-[a-z]+)*)/g, (_, name) => name.replaceAll("-", " "));
 }
 
 function picture(values) {

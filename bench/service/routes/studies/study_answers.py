@@ -118,10 +118,13 @@ async def closed_loop(
 async def units(
     request: Request,
     study_id: StudyId,
-    beside: Annotated[list[int], Query(min_length=2, max_length=1000, description="a study for each other unit")],
+    beside: Annotated[list[int], Query(min_length=1, max_length=1000, description="a study for each other unit")],
     model_id: ModelId = None,
 ) -> UnitComparison:
-    """All are fitted with this study's model: what they have in common, how they scatter. Takes seconds."""
+    """All are fitted with this study's model: what they have in common, how they scatter; of two, what differs.
+
+    Takes seconds.
+    """
     return await in_lab(request, bench.study.units.compare_units, study_id, beside, model_id)
 
 
