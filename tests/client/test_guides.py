@@ -30,7 +30,7 @@ def test_the_curl_examples(bench, service, study, tmp_path):
     for command in commands:
         script = f"{STRICT}\n{command.replace(ADDRESS, service.url)}"
         done = subprocess.run(
-            ["bash", "-c", script], cwd=tmp_path, env=os.environ | {"TOKEN": TOKEN}, capture_output=True, timeout=60
+            ["bash", "-c", script], cwd=tmp_path, env=os.environ | {"FRICTION_BENCH_TOKEN": TOKEN}, capture_output=True, timeout=60
         )
         assert done.returncode == 0, (command, done.stdout, done.stderr)
         assert done.stdout or any(file.stat().st_size for file in tmp_path.iterdir())  # or what -o names
