@@ -217,6 +217,23 @@ def test_evidence_in_words_does_not_contradict_itself(call, changed, said, unsai
     assert unsaid not in words
 
 
+@pytest.mark.parametrize(("rows", "labelled"), [("near reversals too", True), ("steady sliding", False)])
+def test_a_change_says_which_rows_its_errors_are_of_where_the_ladder_counts_others(call, rows, labelled):
+    result = {
+        "sentence": "", "gain": 0.2, "gain_low": 0.1, "gain_high": 0.3, "rows": rows, "ladder_rows": "steady sliding",
+        "before": {"training": 0.05, "held_out": 0.0888}, "after": {"training": 0.04, "held_out": 0.0707},
+        "ladder_before": 0.0616, "ladder_after": 0.0466,
+    }  # fmt: skip
+    text = call(
+        "studies/beforeafter",
+        f"{{ const place = document.createElement('div'); m.beforeAfter(place, {json.dumps(result)}, {{}});"
+        " return place.textContent; }",
+    )
+    for said in ("after, near reversals too7.07 %", "after, steady sliding4.66 %"):
+        assert (said in text) == labelled
+    assert ("held-out error after7.07 %" in text) != labelled
+
+
 def test_the_load_current_is_read_as_it_was_found_last(call):
     read = (
         "((values, half) => m.newest({column: (name) => (name === m.LOAD ? values : half)}))"
