@@ -1,14 +1,21 @@
 """What holds for all tests: one thread for linear algebra, signals that are heard, which tests the wall clock times."""
 
+import atexit
 import gc
 import os
+import shutil
 import signal
+import tempfile
 from pathlib import Path
 
 import pytest
 
 # the matrices are small, and waiting threads cost more than they save; read when numpy is imported
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# where services leave tokens for commands of the same user: not beside those of the user who runs the tests
+os.environ["XDG_STATE_HOME"] = tempfile.mkdtemp(prefix="friction-bench-state-")
+atexit.register(shutil.rmtree, os.environ["XDG_STATE_HOME"], ignore_errors=True)
 
 # of what is imported nothing becomes garbage: a fifth of the collection of tests would go into looking through it
 gc.disable()

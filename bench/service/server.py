@@ -19,9 +19,10 @@ from bench.runs import event_log
 from bench.runs.bench_control import BenchControl
 from bench.runs.bench_process.remote_runner import RemoteRunner
 from bench.service.auth.access import LOOPBACK_NAMES, Access, check_bind, is_loopback
+from bench.service.auth.session import own_file, session_file, session_token
 from bench.service.auth.tls import Certificate
 from bench.service.auth.token_register import TokenRegister, first_token, has_valid_token
-from bench.service.auth.tokens import SAME_USER, chosen_token, session_file, session_token, token_file
+from bench.service.auth.tokens import SAME_USER, chosen_token, token_file
 from bench.service.lab import Lab, LabProcesses
 from bench.service.welcome import Place, welcome
 from bench.store import Store
@@ -114,7 +115,7 @@ def serve_bench(
         with listen(address) as listener:
             port = listener.getsockname()[1]
             tokens = first_token(store, chosen)
-            with session_token(session_file(url, port)) as session:
+            with session_token(session_file(url, port), own_file(port)) as session:
                 fixed = {SAME_USER: session} | dict([tokens.chosen] if tokens.chosen else [])
                 register = TokenRegister(fixed, store.access.tokens.find)
                 register.refresh()

@@ -6,12 +6,13 @@ from bench.study.compare import fitted_parameters
 from bench.study.errors import StudyError, lab_errors
 from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import Material, load, model_of
+from bench.study.models.base import ROWS_IN_WORDS
 from bench.study.models.change import BeforeAfter, BreakawayChange, Changed
 from bench.study.models.comparison import FittedParameter
 from bench.study.models.stages import CHANGE, FITTING, JUDGING
 from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates, compare_breakaway, held_out_both
-from compensator.lab.diagnosis.physical import why_impossible
+from compensator.lab.diagnosis.physical import TOLD, why_at_end, why_impossible
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, held_out_gain
@@ -80,7 +81,7 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     gain = held_out_gain(before, after)
     starts = held_out_both(old, new) if any(one.breakaway for one in changed) else None
     only_there = all(one.rows == "breakaway" for one in changed)
-    impossible = next((found for name in added if (found := why_impossible(fit, name))), "")
+    impossible = next((found for name in added if (found := why_at_end(fit, name) or why_impossible(fit, name))), "")
     error = "held-out error" if rows == material.dataset.rows else "held-out error, near reversals too,"
     sentence = "" if only_there else _sentence(done, effect, error, before.relative, after.relative, gain, impossible)
     if starts is not None:
@@ -98,6 +99,10 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
         effects=effects,
         before=BeforeAfter(training=kept_of(parent).training, held_out=before.relative),
         after=BeforeAfter(training=result.training, held_out=after.relative),
+        rows=ROWS_IN_WORDS[rows],
+        ladder_before=kept_of(parent).held_out,
+        ladder_after=result.held_out,
+        ladder_rows=ROWS_IN_WORDS[material.dataset.rows],
         gain=gain.value,
         gain_low=gain.low,
         gain_high=gain.high,
@@ -131,7 +136,9 @@ def _changed(before: HeldOut, after: HeldOut, parameters: list[FittedParameter])
 def _sentence(done: str, effect: str, error: str, before: float, after: float, gain: Gain, impossible: str = "") -> str:
     helps, harms, neither = _ADVICE[done]
     advice = helps if gain.low > 0.0 else harms if gain.high < 0.0 else neither
-    if impossible:
+    if impossible == TOLD:
+        advice = f"It is {TOLD}, and no find; {advice[0].lower()}{advice[1:]}"
+    elif impossible:
         advice = f"But {impossible}: leave it out."
     told = gain.in_words(before, after)
     return f"{done} {effect} changes the {error} from {before:.2%} to {after:.2%} ({told}). {advice}"

@@ -7,6 +7,7 @@ from bench.store.records import ModelRow
 from bench.study.errors import StudyError
 from bench.study.keep import kept_of
 from bench.study.material import load
+from bench.study.models.base import ROWS_IN_WORDS
 from bench.study.models.kept import KeptMotion
 from bench.study.models.ladder import Ladder, Rung, RungMotion
 from bench.study.models.stages import LOADED
@@ -32,6 +33,7 @@ def ladder(store: Store, study_id: int) -> Ladder:
         study_id=study_id,
         effort=material.effort,
         floor=min(alike, key=lambda kept: (isnan(kept.held_out), kept.held_out)).floor,
+        rows=ROWS_IN_WORDS[material.dataset.rows],
         rungs=[_rung(model, by_id.get(model.parent_id or 0)) for model in models],
     )
 

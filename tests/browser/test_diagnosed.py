@@ -62,6 +62,30 @@ def test_what_is_slight_is_no_candidate_and_the_result_is_next(diagnosed):
     page.wait_for_url("**/result")
 
 
+def test_a_card_says_why_it_cannot_be_and_nothing_stands_outside_of_it(open_page, service, study):
+    found = service.client.get(f"/studies/{study}/diagnose").json()
+    first = found["ranking"][0]
+    badges = ("known from the rig", "limit of the scan")
+    ranking = [{**first, "effect": f"x{at}", "in_class": False, "physical": False, "badge": badge,
+                "picture": {**first["picture"], "driver": "travel since the last reversal", "unit": "rad"}}
+               for at, badge in enumerate(badges)]  # fmt: skip
+    page = open_page(f"#study/{study}/diagnose", width=1300)
+    intercept(page, "**/diagnose?*", lambda route: route.fulfill(json={**found, "classes": [], "ranking": ranking}))
+    page.get_by_role("button", name="Diagnose").click()
+    page.locator("article canvas").nth(1).wait_for()
+    assert page.locator("article .badge").all_inner_texts() == list(badges)
+    beyond = page.evaluate(
+        "[...document.querySelectorAll('article')].flatMap((card) => { const right = (one) => "
+        "one.getBoundingClientRect().right; return [...card.querySelectorAll('button, .legend, .legend-entry, .bar *')]"
+        ".filter((one) => right(one) > right(card)).map((one) => one.textContent); })"
+    )
+    assert beyond == []
+    crossing = page.evaluate(
+        "[...document.querySelectorAll('article .legend')].filter((one) => one.scrollWidth > one.clientWidth).length"
+    )
+    assert crossing == 0
+
+
 def test_a_provisional_curve_is_offered_and_not_pressed_on_anybody(diagnosed):
     picture = {"driver": "velocity", "unit": "rad/s", "against_motion": True, "x": [0, 1], "residual": [0, 1],
                "low": [0, 1], "high": [0, 1], "curve_x": [0, 1], "curve": [0, 1]}  # fmt: skip

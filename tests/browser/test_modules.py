@@ -163,6 +163,77 @@ def test_a_band_is_drawn_between_its_edges_and_not_where_it_is_unknown(call):
     assert painted == [True, True, False, False]
 
 
+@pytest.mark.parametrize("width", [260, 90])
+def test_titles_of_axes_are_not_cut(call, width):
+    long = "travel since the last reversal [°]"
+    written = call(
+        "plots/paint",
+        "{ const canvas = document.createElement('canvas');"
+        " const context = canvas.getContext('2d'), written = [];"
+        " context.fillText = (text, x, y, most) => { const { e, f, b } = context.getTransform();"
+        " const length = Math.min(context.measureText(text).width, most ?? Infinity);"
+        " written.push({text, along: b ? f - x : e + x, length}); };"
+        f" const content = {{rows: [{{title: '{long}'}}], lines: [], xTitle: '{long}'}};"
+        " const theme = {text: '#000', soft: '#000', line: '#fff', font: '12px sans-serif'};"
+        f" m.paint(context, {{width: {width}, height: 120, view: [0, 1], content, theme, pointer: null}});"
+        f" return written.filter(({{text}}) => text === '{long}'); }}",
+    )
+    assert len(written) == 2
+    for one, room in zip(written, (120, width), strict=True):  # up the left side, and below
+        assert one["along"] - one["length"] / 2 >= 0
+        assert one["along"] + one["length"] / 2 <= room
+
+
+RANKED = {
+    "gain": 0.2, "gain_low": 0.1, "gain_high": 0.3, "p_value": 0.5, "why_not": [], "confused_with": [], "d_prime": 7.3,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("changed", "said", "unsaid"),
+    [
+        ({}, "would fall by 20.0 % (10.0 % to 30.0 %). All of the interval is a gain.", "No change"),
+        ({"gain": -3.8e-7, "gain_low": -1e-6, "gain_high": 2e-7}, "No change of the held-out error. Of", "rise"),
+        (
+            {"gain": 1e-7, "gain_low": -0.01, "gain_high": 0.02},
+            "No change of the held-out error (−1.0 % to 2.0 %",
+            "fall",
+        ),
+        (
+            {"confused_with": ["frictional_lag"]},
+            "speaks for frictional lag; its own curve is told from theirs",
+            "confuse",
+        ),
+        (
+            {"confused_with": ["frictional_lag"], "d_prime": 4.9},
+            "These data confuse it with frictional lag",
+            "told from",
+        ),
+    ],
+)
+def test_evidence_in_words_does_not_contradict_itself(call, changed, said, unsaid):
+    words = call("studies/diagnosis", f"m.evidence({json.dumps({**RANKED, **changed})})")
+    assert said in words
+    assert unsaid not in words
+
+
+@pytest.mark.parametrize(("rows", "labelled"), [("near reversals too", True), ("steady sliding", False)])
+def test_a_change_says_which_rows_its_errors_are_of_where_the_ladder_counts_others(call, rows, labelled):
+    result = {
+        "sentence": "", "gain": 0.2, "gain_low": 0.1, "gain_high": 0.3, "rows": rows, "ladder_rows": "steady sliding",
+        "before": {"training": 0.05, "held_out": 0.0888}, "after": {"training": 0.04, "held_out": 0.0707},
+        "ladder_before": 0.0616, "ladder_after": 0.0466,
+    }  # fmt: skip
+    text = call(
+        "studies/beforeafter",
+        f"{{ const place = document.createElement('div'); m.beforeAfter(place, {json.dumps(result)}, {{}});"
+        " return place.textContent; }",
+    )
+    for said in ("after, near reversals too7.07 %", "after, steady sliding4.66 %"):
+        assert (said in text) == labelled
+    assert ("held-out error after7.07 %" in text) != labelled
+
+
 def test_the_load_current_is_read_as_it_was_found_last(call):
     read = (
         "((values, half) => m.newest({column: (name) => (name === m.LOAD ? values : half)}))"

@@ -8,7 +8,7 @@ from bench.evaluation.challenge.answer import Truth
 from bench.evaluation.challenge.guess import Guess, score
 from bench.evaluation.challenge.hidden_plant import MECHANISMS
 from bench.evaluation.challenge.names import ABSORBED, ACCEPTED, accepted
-from bench.evaluation.challenge.share import remarks_on
+from bench.evaluation.challenge.share import faint, remarks_on, share_in_words
 
 
 def test_every_mechanism_has_its_names_and_the_lab_knows_them() -> None:
@@ -99,9 +99,32 @@ def test_the_words_that_are_no_effects_are_named_first() -> None:
         Guess.parse("none_of_them")
 
 
-def test_what_recordings_hold_next_to_nothing_of_is_said() -> None:
-    truths = [Truth("spring", "a spring", 1.0, "stiffness", "1", share, {}) for share in (0.0, 4e-4, 6e-4)]
-    assert remarks_on(truths[2:]) == []
-    said = remarks_on(truths)
-    assert len(said) == 2
-    assert "a spring: these recordings hold next to nothing of it, less than 0.05% of the effort" in said[0]
+def _truth(share: float, at_most: float | None) -> Truth:
+    return Truth("spring", "a spring", 1.0, "stiffness", "1", share, {}, at_most)
+
+
+@pytest.mark.parametrize(
+    ("truth", "words", "remark", "no_fault"),
+    [
+        (_truth(6e-4, 0.02), "0.06 %", None, False),
+        (_truth(1e-4, 3e-4), "at most 0.03 %", "a spring: these recordings hold next to nothing of it, at most", True),
+        (_truth(0.0, 0.0265), "at most 2.6 %", "no more than two runs of one joint do (at most 2.6 %", False),
+        (_truth(0.0, None), "not told", "no more than two runs of one joint do, so that its share is not told", False),
+    ],
+)
+def test_a_share_that_is_not_told_from_the_scatter_of_runs_is_no_proof(
+    truth: Truth, words: str, remark: str | None, no_fault: bool
+) -> None:
+    assert share_in_words(truth) == words
+    assert faint([truth]) == ["spring"] * no_fault
+    said = remarks_on([truth])
+    assert len(said) == (remark is not None)
+    assert remark is None or remark in said[0]
+    assert not any("no model" in one for one in said)
+
+
+def test_what_recordings_surely_hold_next_to_nothing_of_is_not_missed() -> None:
+    found = score(("spring", "drag"), Guess.parse("nothing"), ABSORBED, ["spring"])
+    assert (found.faint, found.missed) == (("spring",), ("drag",))
+    named = score(("spring",), Guess.parse("spring"), ABSORBED, ["spring"])
+    assert (named.right, named.faint) == (("spring",), ())

@@ -36,17 +36,25 @@ def test_from_the_draw_to_the_score(command):
     assert "missed" in shown.stdout or "not to be told" in shown.stdout
 
 
-def test_a_mechanism_of_which_the_recordings_hold_next_to_nothing_is_remarked(command, tmp_path):
+@pytest.mark.parametrize(
+    ("at_most", "remark", "count"),
+    [
+        (1e-4, "a spring: these recordings hold next to nothing of it, at most 0.01 % of the effort", "faint"),
+        (0.02, "a spring: with it and without it the motor current differs by no more than two runs", "missed"),
+    ],
+)
+def test_a_mechanism_that_the_recordings_hardly_hold_is_remarked(command, tmp_path, at_most, remark, count):
     (tmp_path / "set").mkdir()
-    truth = Truth("spring", "a spring", 1.0, "stiffness", "N m/rad", 0.0, {})
+    truth = Truth("spring", "a spring", 1.0, "stiffness", "N m/rad", 0.0, {}, at_most)
     write_sealed(Answer(1, "hard", 0, (truth,), {}), tmp_path / "set", tmp_path / "set.answer")
     shown = " ".join(command("reveal", "set.answer", "--guess", "nothing").stdout.split())
-    remark = "a spring: these recordings hold next to nothing of it, less than 0.05% of the effort"
     assert remark in shown
-    assert "missed: spring" in shown
+    assert "Share of the effort: rms of what the mechanism changes" in shown
+    assert ("guess: nothing missed: spring" in shown) == (count == "missed")
+    assert ("too little of it to count as missed: spring" in shown) == (count == "faint")
     scored = json.loads(command("reveal", "set.answer", "--guess", "nothing", "--json").stdout)
     assert scored["remarks"][0].startswith(remark)
-    assert scored["score"]["missed"] == ["spring"]
+    assert scored["score"][count] == ["spring"]
 
 
 def test_without_a_seed_nobody_knows_what_comes(command):

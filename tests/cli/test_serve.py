@@ -62,7 +62,7 @@ def _start(url: str, token: str) -> None:
     assert answer.status_code == 201
 
 
-def test_status_and_stop_from_another_process(served, command, tmp_path):
+def test_status_and_stop_from_another_process(served, command, tmp_path, monkeypatch):
     _, url, token = served
     _wait_until_answering(url)
     assert json.loads(command("status", "--url", url, "--json").stdout)["state"] == "idle"
@@ -74,6 +74,13 @@ def test_status_and_stop_from_another_process(served, command, tmp_path):
     [file] = tmp_path.glob("*.token")
     assert token not in file.read_text()
     file.unlink()
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    for store in ((), ("--store", "other.sqlite")):  # another terminal is in another folder, or is about another store
+        stopped = command(*store, "stop", "--url", url)
+        assert stopped.exit_code == 0, stopped.output
+    monkeypatch.setenv("XDG_STATE_HOME", str(elsewhere))  # as of another user
     refused = command("stop", "--url", url)
     assert refused.exit_code == 5
     assert "needs a token" in refused.stderr

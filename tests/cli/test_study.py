@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from bench.cli.lab import diagnosis_tables
+from bench.cli.lab import diagnosis_tables, study_tables
 from bench.cli.lab.diagnosis_tables import next_step
 from bench.study.diagnosis import search as search_module
 from bench.study.models.diagnosis import ProvisionalTerm
@@ -63,6 +63,22 @@ def test_from_trials_to_an_error_that_falls(command, tmp_path):
     refused = command("study", "add", study, "magic")
     assert refused.exit_code == 3
     assert "magic" in refused.stderr
+
+
+@pytest.mark.parametrize(("rows", "in_both"), [("near reversals too", True), ("steady sliding", False)])
+def test_a_change_and_the_ladder_say_which_rows_their_errors_are_of(capsys, rows, in_both):
+    changed = SimpleNamespace(
+        sentence="Added.", model_id=2, rows=rows, ladder_rows="steady sliding", ladder_before=0.0616,
+        ladder_after=0.0466, before=SimpleNamespace(training=0.05, held_out=0.0888),
+        after=SimpleNamespace(training=0.04, held_out=0.0707), parameters=[], breakaway=None,
+    )  # fmt: skip
+    study_tables.change(changed)
+    told = capsys.readouterr().out
+    assert "training, steady sliding" in told
+    assert f"held out, {rows}" in told
+    assert ("held out, steady sliding, as in the ladder" in told) == ("4.66 %" in told) == in_both
+    study_tables.ladder(SimpleNamespace(study_id=1, rows="steady sliding", rungs=[], floor=None))
+    assert "Ladder of study 1: errors in the effort, steady sliding" in capsys.readouterr().out
 
 
 def test_effects(command):

@@ -73,9 +73,12 @@ def test_what_cannot_be_revealed_says_why(service, challenge):
     assert "is no challenge" in answer.json()["detail"]
 
 
-def test_what_the_recordings_hold_next_to_nothing_of_is_said_beside_the_score(monkeypatch):
-    truth = Truth("spring", "a spring", 1.0, "stiffness", "N m/rad", 1e-4, {})
+@pytest.mark.parametrize(("at_most", "missed"), [(2e-4, 0), (0.02, 1)])
+def test_what_the_recordings_hold_next_to_nothing_of_is_not_missed(monkeypatch, at_most, missed):
+    truth = Truth("spring", "a spring", 1.0, "stiffness", "N m/rad", 1e-4, {}, at_most)
     monkeypatch.setattr(kept, "answer_of", lambda *_: Answer(1, "hard", 0, (truth,), {}))
     told = _reveal(None, 1, Reveal(guess="nothing"))
-    assert len(told.missed) == 1  # the score is what it was
-    assert "a spring: these recordings hold next to nothing of it" in told.sentence
+    assert (len(told.missed), len(told.faint)) == (missed, 1 - missed)
+    assert told.hidden[0].share_words == f"at most {100 * at_most:g} %"
+    assert ("hold next to nothing of it" in told.sentence) == (not missed)
+    assert ("all that these recordings can tell" in told.sentence) == (not missed)

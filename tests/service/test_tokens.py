@@ -12,6 +12,7 @@ import pytest
 from bench.errors import ConfigurationError
 from bench.service.auth import token_register
 from bench.service.auth.attempts import BURST, MOST_ADDRESSES, REFILL_S, Attempts
+from bench.service.auth.session import found_token, own_file, session_file, session_token
 from bench.service.auth.token_register import TokenRegister, first_token, has_valid_token
 from bench.service.auth.tokens import (
     Role,
@@ -20,8 +21,6 @@ from bench.service.auth.tokens import (
     digest_of,
     make_token,
     read_token,
-    session_file,
-    session_token,
     token_file,
 )
 from bench.store import Store
@@ -182,6 +181,52 @@ def test_a_session_token_lives_as_long_as_its_service(tmp_path):
         assert stat.S_IMODE(path.stat().st_mode) == 0o600
         assert read_token(path) == token
     assert not path.exists()
+
+
+def test_a_session_token_is_found_whatever_the_store(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    served, other = (f"sqlite:///{tmp_path}/{name}.sqlite" for name in ("served", "other"))
+    own = own_file(8000)
+    assert own == tmp_path / "state" / "friction-bench" / "port-8000.token"
+    with session_token(session_file(served, 8000), own) as token:
+        assert stat.S_IMODE(own.stat().st_mode) == 0o600
+        assert stat.S_IMODE(own.parent.stat().st_mode) == 0o700
+        assert found_token(served, 8000) == found_token(other, 8000) == token
+        assert found_token(other, 8001) is None
+        own.chmod(0o644)
+        with pytest.raises(ConfigurationError, match="chmod 600"):
+            found_token(other, 8000)
+    assert not own.exists()
+    assert found_token(other, 8000) is None
+
+
+def test_the_token_of_the_service_that_runs_goes_before_one_that_was_left(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    here, there = (f"sqlite:///{tmp_path}/{name}.sqlite" for name in ("here", "there"))
+    left = session_file(here, 8000)
+    left.write_text("left-by-a-service-that-was-killed\n")
+    left.chmod(0o600)
+    os.utime(left, (1.0, 1.0))
+    with session_token(session_file(there, 8000), own_file(8000)) as token:
+        assert found_token(here, 8000) == token
+
+
+def test_a_service_does_not_take_away_the_token_of_another_of_its_port(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    paths = [session_file(f"sqlite:///{tmp_path}/{name}.sqlite", 8000) for name in ("first", "second")]
+    with session_token(paths[0], own_file(8000)):
+        second = session_token(paths[1], own_file(8000))
+        token = second.__enter__()
+    assert found_token(f"sqlite:///{tmp_path}/none.sqlite", 8000) == token
+    second.__exit__(None, None, None)
+
+
+def test_without_a_folder_of_ones_own_the_file_beside_the_store_has_to_do(tmp_path, monkeypatch):
+    (tmp_path / "state").write_text("a file where a folder is wanted")
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    url = f"sqlite:///{tmp_path}/bench.sqlite"
+    with session_token(session_file(url, 8000), own_file(8000)) as token:
+        assert found_token(url, 8000) == token
 
 
 def test_a_token_file_that_others_can_read_is_refused(tmp_path, monkeypatch):

@@ -2,8 +2,12 @@
 
 import pytest
 
+from bench.study import changes
 from bench.study.changes import add_effect, drop_effect
 from bench.study.create import create_study
+from bench.study.ladder import ladder
+from compensator.lab.diagnosis.physical import TOLD
+from compensator.lab.model.gain import Gain
 
 
 @pytest.mark.parametrize("hold_out", [(), ("load_kg=0.2",)], ids=["one left out in turn", "a load held out"])
@@ -12,6 +16,28 @@ def test_an_effect_near_reversals_is_added_and_dropped_on_the_same_rows(store, e
     study = create_study(store, "memory", [experiment_id], hold_out, cutoff_hz=6.0).study_id
     added = add_effect(store, study, "backlash")
     dropped = drop_effect(store, study, "backlash", added.model_id)
+    assert (added.rows, added.ladder_rows) == ("near reversals too", "steady sliding")
+    steps = ladder(store, study)
+    assert steps.rows == "steady sliding"
+    assert [rung.held_out for rung in steps.rungs[:2]] == [added.ladder_before, added.ladder_after]
+    assert added.ladder_before != added.before.held_out, "each is of the rows that it names"
     assert dropped.before.held_out == pytest.approx(added.after.held_out, rel=1e-6)
     assert dropped.after.held_out == pytest.approx(added.before.held_out, rel=1e-3)
     assert (1.0 - dropped.gain) == pytest.approx(1.0 / (1.0 - added.gain), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("why", "end"),
+    [
+        ({"why_at_end": "distance 0.273 rad is the most that it can be"},
+         "But distance 0.273 rad is the most that it can be: leave it out."),
+        ({"why_impossible": TOLD}, "It is known from the rig, and no find; it helps: keep it."),
+        ({}, "It helps: keep it."),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_said_when_it_is_added(store, experiment_id, monkeypatch, why, end):
+    study = create_study(store, "memory", [experiment_id], (), cutoff_hz=6.0).study_id
+    for name in ("why_at_end", "why_impossible"):
+        monkeypatch.setattr(changes, name, lambda *_, name=name: why.get(name, ""))
+    monkeypatch.setattr(changes, "held_out_gain", lambda *_: Gain(0.2, 0.1, 0.3))
+    assert add_effect(store, study, "backlash").sentence.endswith(end)

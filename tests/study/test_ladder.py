@@ -23,8 +23,8 @@ def test_the_floor_is_that_of_the_best_model(monkeypatch, kept, floor):
     models = [SimpleNamespace(id=number, parent_id=None, effects=["coulomb"]) for number in range(len(kept))]
     found = [KeptModel(held_out=error, floor=own, trials=trials) for error, own, trials in kept]
     monkeypatch.setattr(module, "kept_of", lambda model: found[model.id])
-    monkeypatch.setattr(
-        module, "load", lambda *_: SimpleNamespace(effort=EffortName(name="torque", unit="N m", title="torque"))
-    )
+    effort = EffortName(name="torque", unit="N m", title="torque")
+    material = SimpleNamespace(effort=effort, dataset=SimpleNamespace(rows="sliding"))
+    monkeypatch.setattr(module, "load", lambda *_: material)
     store: Any = SimpleNamespace(models=lambda _: models)
     assert module.ladder(store, 1).floor == floor

@@ -77,6 +77,7 @@ def reveal(
     from bench.evaluation.challenge.guess import Guess, score
     from bench.evaluation.challenge.names import ABSORBED
     from bench.evaluation.challenge.seal import read_sealed
+    from bench.evaluation.challenge.share import faint
 
     if guess is not None and study is not None:
         raise ParameterError("--guess and --study are both given; wanted is one of them")
@@ -84,7 +85,8 @@ def reveal(
     if study is not None:
         guessed = _guess_of(context, study)
     opened = read_sealed(answer, recordings)
-    found = None if guessed is None else score([truth.name for truth in opened.truths], guessed, ABSORBED)
+    names = [truth.name for truth in opened.truths]
+    found = None if guessed is None else score(names, guessed, ABSORBED, faint(opened.truths))
     if as_json:
         print_json(_as_json(opened, guessed, found))
     else:
@@ -112,7 +114,7 @@ def _as_json(answer: "Answer", guess: "Guess | None", score: "Score | None") -> 
 
 def _print(answer: "Answer", guess: "Guess | None", score: "Score | None") -> None:
     from bench.evaluation.challenge.names import accepted
-    from bench.evaluation.challenge.share import remarks_on
+    from bench.evaluation.challenge.share import MEANING, remarks_on, share_in_words
 
     if answer.truths:
         rows = [
@@ -120,11 +122,12 @@ def _print(answer: "Answer", guess: "Guess | None", score: "Score | None") -> No
                 truth.title,
                 " or ".join(accepted(truth.name)) or "none of these",
                 f"{truth.size:.3g}{'' if truth.unit == '1' else f' {truth.unit}'} ({truth.measure})",
-                percent(truth.share),
+                share_in_words(truth),
             )
             for truth in answer.truths
         ]
         table("Hidden", ["mechanism", "in the catalogue", "size", "share of the effort#"], rows)
+        say(MEANING)
     else:
         say("Hidden: nothing.")
     for sentence in remarks_on(answer.truths):
@@ -142,6 +145,7 @@ def _print_score(score: "Score") -> None:
         ("right", score.right, f" (class of {sizes})" if any(size > 1 for size in score.class_sizes) else ""),
         ("missed", score.missed, ""),
         ("not to be told from what every model has", score.untold, ""),
+        ("too little of it to count as missed", score.faint, ""),
         ("in every recording", score.recorded, f" ({'; '.join(RECORDED[one] for one in score.recorded)})"),
         ("false", score.wrong, ""),
     ]
@@ -149,7 +153,8 @@ def _print_score(score: "Score") -> None:
         if names:  # as the catalogue calls them; a mechanism outside of it has its own name only
             called = (" or ".join(accepted(one)) or one if one in ACCEPTED else one for one in names)
             say(f"{word}: {', '.join(called)}{note}")
-    say("All of it, and nothing else." if score.perfect else "Not all of it, or more than it.")
+    whole = "All that these recordings can tell" if score.untold or score.faint else "All of it"
+    say(f"{whole}, and nothing else." if score.perfect else "Not all of it, or more than it.")
 
 
 def _print_ranges() -> None:

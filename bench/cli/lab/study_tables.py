@@ -203,9 +203,12 @@ def change(found: "Changed") -> None:
     """What adding or dropping an effect did."""
     say(found.sentence)
     rows = [
-        ("training", percent(found.before.training), percent(found.after.training)),
-        ("held out", percent(found.before.held_out), percent(found.after.held_out)),
+        (f"training, {found.ladder_rows}", percent(found.before.training), percent(found.after.training)),
+        (f"held out, {found.rows}", percent(found.before.held_out), percent(found.after.held_out)),
     ]
+    if found.rows != found.ladder_rows:
+        held_out = percent(found.ladder_before), percent(found.ladder_after)
+        rows.append((f"held out, {found.ladder_rows}, as in the ladder", *held_out))
     table(f"Model {found.model_id}", ["error on", "before#", "after#"], rows)
     if found.parameters:
         _parameters("Its parameters, 95 % intervals", found.parameters)
@@ -229,7 +232,7 @@ def ladder(found: "Ladder") -> None:
     ]
     errors = ["training error#", "held-out error#", "breakaway#", "position in closed loop#"]
     columns = ["model#", "change", *errors, "reflected load, error [g]#"]
-    table(f"Ladder of study {found.study_id}", columns, rows)
+    table(f"Ladder of study {found.study_id}: errors in the effort, {found.rows}", columns, rows)
     if found.floor is not None:
         say(f"floor, from repeated trials: {percent(found.floor)}")
 

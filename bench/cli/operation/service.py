@@ -62,7 +62,8 @@ def ask(session: BenchSession, method: str, url: str, path: str, body: Mapping[s
 def token_for(session: BenchSession, url: str) -> str | None:
     """The token for a service: one that was chosen, else that of the same user's service on this machine."""
     from bench.service.auth.access import is_loopback
-    from bench.service.auth.tokens import chosen_token, read_token, session_file, token_file
+    from bench.service.auth.session import found_token
+    from bench.service.auth.tokens import chosen_token, token_file
 
     chosen = chosen_token(token_file(session.store_url()))
     if chosen is not None:
@@ -73,7 +74,7 @@ def token_for(session: BenchSession, url: str) -> str | None:
     except ValueError as error:
         raise ServiceError(f"'{url}' is no address of a service ({error}); wanted is {DEFAULT_URL}") from error
     # only this machine may be sent it: what answers elsewhere is not the service that made the file
-    return read_token(session_file(session.store_url(), port)) if is_loopback(host) else None
+    return found_token(session.store_url(), port) if is_loopback(host) else None
 
 
 def _detail(answer: "httpx.Response") -> str:

@@ -13,8 +13,9 @@ class Truth:
     Attributes:
         name: of the mechanism; title: in words.
         size: how much of it; measure: of what; unit: of the size.
-        share: RMS of what it changes in the motor current over the current's RMS.
+        share: RMS of what it changes in the motor current over the current's RMS, 0..1.
         parameters: of the plant, that make it.
+        share_at_most: the same with what two runs differ by anyway; None in answers of earlier versions.
     """
 
     name: str
@@ -24,6 +25,7 @@ class Truth:
     unit: str
     share: float
     parameters: Values
+    share_at_most: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

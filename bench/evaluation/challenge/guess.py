@@ -73,6 +73,7 @@ class Score:
         recorded: names that hold for every recording, whatever is hidden; they do not count.
         wrong: classes said to be there that are not.
         class_sizes: of the classes that hold a right name.
+        faint: hidden mechanisms of which the recordings hold less than a diagnosis may name; they do not count.
     """
 
     right: tuple[str, ...]
@@ -81,6 +82,7 @@ class Score:
     recorded: tuple[str, ...]
     wrong: tuple[str, ...]
     class_sizes: tuple[int, ...]
+    faint: tuple[str, ...] = ()
 
     @property
     def perfect(self) -> bool:
@@ -94,12 +96,11 @@ class Score:
         return sum(1.0 / size for size in self.class_sizes) + outside - len(self.wrong)
 
 
-def score(truths: Iterable[str], guess: Guess, absorbed: Iterable[str] = ()) -> Score:
-    """Hold a guess against the names of the hidden mechanisms; those in `absorbed` need not be named."""
+def score(truths: Iterable[str], guess: Guess, absorbed: Iterable[str] = (), faint: Iterable[str] = ()) -> Score:
+    """Hold a guess against the names of the hidden mechanisms; those in `absorbed` and `faint` need not be named."""
     left = list(guess.classes)
     right: list[str] = []
-    missed: list[str] = []
-    untold: list[str] = []
+    others: list[str] = []
     sizes: list[int] = []
     unknown_used = False
     for truth in truths:
@@ -113,12 +114,17 @@ def score(truths: Iterable[str], guess: Guess, absorbed: Iterable[str] = ()) -> 
             unknown_used = True
             right.append(truth)
         else:
-            (untold if truth in absorbed else missed).append(truth)
+            others.append(truth)
+    untold = [truth for truth in others if truth in absorbed]
+    too_faint = [truth for truth in others if truth in faint and truth not in untold]
+    missed = [truth for truth in others if truth not in (*untold, *too_faint)]
     recorded = ["/".join(one) for one in left if set(one) <= set(RECORDED)]
     wrong = ["/".join(one) for one in left if not set(one) <= set(RECORDED)]
     if guess.unknown and not unknown_used:
         wrong.append(UNKNOWN)
-    return Score(tuple(right), tuple(missed), tuple(untold), tuple(recorded), tuple(wrong), tuple(sizes))
+    return Score(
+        tuple(right), tuple(missed), tuple(untold), tuple(recorded), tuple(wrong), tuple(sizes), tuple(too_faint)
+    )
 
 
 def guess_of_study(store: Store, study_id: int) -> Guess:

@@ -97,6 +97,7 @@ def _truths(drawn: DrawnPlant, seed: int, difficulty: Difficulty, recordings: li
         hidden.name: [_record(drawn, one, difficulty, hidden.name) for one in (seed, other_seed)]
         for hidden in drawn.hidden
     }
+    shares = {name: effort_share(recordings, *both) for name, both in pairs.items()}
     return tuple(
         Truth(
             hidden.name,
@@ -104,8 +105,9 @@ def _truths(drawn: DrawnPlant, seed: int, difficulty: Difficulty, recordings: li
             hidden.size,
             hidden.measure,
             hidden.unit,
-            effort_share(recordings, *pairs[hidden.name]),
+            shares[hidden.name].value,
             hidden.tables,
+            shares[hidden.name].at_most,
         )
         for hidden in drawn.hidden
     )

@@ -10,8 +10,6 @@ import os
 import re
 import secrets
 import stat
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import total_ordering
@@ -93,12 +91,6 @@ def token_file(store_url: str) -> Path:
     return Path("friction-bench.token")
 
 
-def session_file(store_url: str, port: int) -> Path:
-    """The file with which commands of the same user reach the service on `port`, while it runs."""
-    beside = token_file(store_url)
-    return beside.with_name(f"{beside.stem}.port-{port}.token")
-
-
 def chosen_token(path: Path) -> tuple[str, str] | None:
     """A token that somebody chose: from the environment, else from the file `path`. With the name that it goes by.
 
@@ -127,28 +119,6 @@ def read_token(path: Path) -> str | None:
             f"Delete the file to get a new token, or run: chmod 600 {path}"
         )
     return _checked(path.read_text(encoding="utf-8").strip(), str(path))
-
-
-@contextmanager
-def session_token(path: Path) -> Iterator[str]:
-    """A token of this process alone, in a file that only its owner can read; file and token end with the block.
-
-    Raises:
-        ConfigurationError: the file cannot be written.
-    """
-    token = make_token()
-    try:
-        path.unlink(missing_ok=True)  # of a service that was killed
-        # O_EXCL: never follow a link that somebody else has put there in the meantime
-        descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    except OSError as error:
-        raise ConfigurationError(f"{path}: cannot be written ({error.strerror}); make its folder writable") from error
-    try:
-        with os.fdopen(descriptor, "w", encoding="utf-8") as file:
-            file.write(token + "\n")
-        yield token
-    finally:
-        path.unlink(missing_ok=True)
 
 
 def _checked(token: str, where: str) -> str:

@@ -74,7 +74,14 @@ class Hidden(BaseModel):
     size: float
     measure: str = Field(description="what `size` is the size of")
     unit: str
-    share: float = Field(description="of the effort that it makes, 0..1")
+    share: float = Field(
+        description="rms of what it changes in the motor current over the current's rms, less what two runs of one "
+        "joint differ by anyway, 0..1"
+    )
+    share_at_most: float | None = Field(
+        description="the same with what two runs differ by, 0..1; null: of an earlier version"
+    )
+    share_words: str = Field(description="the share as per cent, or its bound where it is not told from that scatter")
 
 
 class Revealed(BaseModel):
@@ -86,6 +93,9 @@ class Revealed(BaseModel):
     right: list[str]
     missed: list[str]
     untold: list[str] = Field(description="hidden, but no recording of motion can tell; they do not count")
+    faint: list[str] = Field(
+        description="hidden, but the recordings surely hold less of it than a diagnosis may name; they do not count"
+    )
     recorded: list[str] = Field(description="named, and in every recording, whatever is hidden; they do not count")
     wrong: list[str]
     perfect: bool
@@ -142,11 +152,11 @@ def _reveal(store: Store, challenge_id: int, body: Reveal) -> Revealed:
     from bench.evaluation.challenge.guess import Guess, guess_of_study, score
     from bench.evaluation.challenge.kept import answer_of
     from bench.evaluation.challenge.names import ABSORBED, accepted, title_of
-    from bench.evaluation.challenge.share import remarks_on
+    from bench.evaluation.challenge.share import faint, remarks_on, share_in_words
 
     answer = answer_of(store, challenge_id)
     guess = guess_of_study(store, body.study_id or 0) if body.guess is None else Guess.parse(_text(body.guess))
-    found = score([truth.name for truth in answer.truths], guess, ABSORBED)
+    found = score([truth.name for truth in answer.truths], guess, ABSORBED, faint(answer.truths))
     hidden = [
         Hidden(
             title=truth.title,
@@ -155,6 +165,8 @@ def _reveal(store: Store, challenge_id: int, body: Reveal) -> Revealed:
             measure=truth.measure,
             unit=truth.unit,
             share=truth.share,
+            share_at_most=truth.share_at_most,
+            share_words=share_in_words(truth),
         )
         for truth in answer.truths
     ]
@@ -165,6 +177,7 @@ def _reveal(store: Store, challenge_id: int, body: Reveal) -> Revealed:
         right=[title_of(one) for one in found.right],
         missed=[title_of(one) for one in found.missed],
         untold=[title_of(one) for one in found.untold],
+        faint=[title_of(one) for one in found.faint],
         recorded=list(found.recorded),
         wrong=list(found.wrong),
         perfect=found.perfect,
@@ -179,6 +192,8 @@ def _text(guess: str | list[str]) -> str:
 
 def _sentence(hidden: int, found: "Score") -> str:
     what = {0: "Nothing was hidden", 1: "One mechanism was hidden"}.get(hidden, f"{hidden} mechanisms were hidden")
+    if found.perfect and (found.untold or found.faint):
+        return f"{what}, and the guess says all that these recordings can tell."
     if found.perfect:
         return f"{what}, and the guess says just that."
     parts = [f"{len(found.missed)} missed"] * bool(found.missed) + [f"{len(found.wrong)} wrong"] * bool(found.wrong)

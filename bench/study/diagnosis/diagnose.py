@@ -135,6 +135,7 @@ def _ranked(dataset: Dataset, candidate: diagnosis.Candidate, named: set[str]) -
         confused_with=list(candidate.rivals),
         d_prime=candidate.detectability,
         physical=candidate.physical,
+        badge=candidate.badge,
         why_not=doubts(candidate),
         sentence=_sentence(candidate),
         picture=_picture(dataset, candidate.picture),

@@ -11,6 +11,9 @@ LONGEST = 80  # characters of a cell in a notebook
 LEAST_P = f"{LEAST_STATED:g} stands for that and less: no smaller chance can be known"
 
 
+ROWS_IN_WORDS = {"sliding": "steady sliding", "moving": "near reversals too", "all": "at rest too"}
+"""Which rows an error is of: each holds those before it."""
+
 Condition = float | str | bool
 Role = Literal["training", "held_out"]
 

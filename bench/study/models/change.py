@@ -38,6 +38,15 @@ class Changed(StudyModel):
     effects: list[str]
     before: BeforeAfter
     after: BeforeAfter
+    rows: str = Field(
+        description="which rows the held-out errors and the gain are of: those where the changed effect lives",
+        examples=["near reversals too"],
+    )
+    ladder_before: Number = Field(description="held-out error of the parent as the ladder has it")
+    ladder_after: Number = Field(description="the same of the child")
+    ladder_rows: str = Field(
+        description="which rows the training errors and those of the ladder are of", examples=["steady sliding"]
+    )
     gain: Number
     gain_low: Number
     gain_high: Number

@@ -75,7 +75,12 @@ class Ranked(StudyModel):
     in_class: bool = Field(description="one of the effects that the data name")
     confused_with: list[str]
     d_prime: Number = Field(description="how well it stands apart from its best rival; from 6 on the name is sure")
-    physical: bool = Field(description="False where the fitted sign or size is physically impossible")
+    physical: bool = Field(
+        description="False where size, sign or shape are such that it cannot be what is missing: `badge` says which"
+    )
+    badge: str = Field(
+        description="that in two or three words; empty where it can be what is missing", examples=["known from the rig"]
+    )
     why_not: list[str] = Field(
         description="what it lacks to be named; empty where it lacks nothing, but another one may come before it",
         examples=[["may be luck", "gain not sure"]],

@@ -56,4 +56,5 @@ class Ladder(StudyModel):
     floor: float | None = Field(
         description="relative error that repeated trials set, by the model that predicts best; null without repeats"
     )
+    rows: str = Field(description="which rows the errors are of", examples=["steady sliding"])
     rungs: list[Rung]

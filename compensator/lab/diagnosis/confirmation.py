@@ -1,6 +1,7 @@
 """Whether a candidate is confirmed by its evidence and its gain on held-out rows, and whether it is worth adding."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from compensator.lab.chance import SIGNIFICANT
@@ -11,6 +12,8 @@ from compensator.lab.screening.evidence import VERY_STRONG
 SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
 SLIGHT_PART = 0.05  # of what effects that were added explain, root mean square: a formula is rarely right to more
 LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
+NEAR = 10.0  # score from which an effect that is not confirmed is said to be the nearest
+LUCK, LUCK_AMONG_ALL, UNSURE_GAIN = "may be luck", "may be luck among all that was tried", "gain not sure"
 LEAST_GAIN_OF_CHAIN = 0.05  # every measuring chain is a little late, and leaves a little near reversals
 
 
@@ -39,13 +42,20 @@ def doubts(candidate: Candidate) -> list[str]:
     least = LEAST_GAIN_OF_CHAIN if chain else LEAST_GAIN
     asked = {
         "score not above 0": candidate.score > 0.0,
-        "may be luck": candidate.p_value <= SIGNIFICANT or strong,
+        LUCK: candidate.p_value <= SIGNIFICANT or strong,
         f"explains under {LEAST_OF_EFFORT:.2%} of the effort": explained >= LEAST_OF_EFFORT**2,
         f"gain under {least:.1%}": gain.value >= least,
-        "gain not sure": gain.low > 0.0 or (strong and candidate.rows == "sliding"),
+        UNSURE_GAIN: gain.low > 0.0 or (strong and candidate.rows == "sliding"),
     }
     told = [reason for reason in (candidate.impossible, candidate.refused) if reason]
     return [doubt for doubt, holds in asked.items() if not holds] + told
+
+
+def nearest_one(candidates: Sequence[Candidate]) -> Candidate | None:
+    """Of effects that are not confirmed, that with the most evidence, where more data may confirm it; None without."""
+    open_yet = {LUCK, LUCK_AMONG_ALL, UNSURE_GAIN}
+    near = [one for one in candidates if one.score > NEAR and set(doubts(one)) <= open_yet]
+    return max(near, key=lambda one: one.score, default=None)
 
 
 def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:

@@ -13,12 +13,14 @@ from compensator.lab.at_rest.rest_comparison import RestComparison, at_rest_in_w
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.alien_effort import alien_effort
 from compensator.lab.diagnosis.answer import Answer
+from compensator.lab.diagnosis.confirmation import nearest_one
 from compensator.lab.diagnosis.data_checks import data_problems, fatal_problems, lesser_problems
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
 from compensator.lab.diagnosis.four_families import LEFT, STAGES, judged
 from compensator.lab.diagnosis.note import Note, Value
 from compensator.lab.diagnosis.remaining import what_remains
 from compensator.lab.diagnosis.run_to_run import ByRun, by_run_in_words, differences_by_run
+from compensator.lab.diagnosis.wording import nearest_in_words
 from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
@@ -72,7 +74,8 @@ def diagnose(fit: Fit) -> Diagnosis:
         verdict=first.verdict,
         sentence=(f"{at_rest[0].text} In motion: " if sticks else "")
         + first.sentence
-        + _hidden_rivals(first, fit, families.left_out),
+        + _hidden_rivals(first, fit, families.left_out)
+        + ("" if too_short else _nearest(first, ranked)),
         p_value=first.p_value,
         classes=_classes(ranked),
         candidates=ranked,
@@ -92,6 +95,12 @@ def best_named(fit: Fit, show_in: MotionRows) -> str | None:
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
     screening = screen(gathered.bases, blocks, fit.dataset.block_index[gathered.rows])
     return screening.evidence[0].block.name if screening.evidence else None
+
+
+def _nearest(first: Answer, ranked: list[Candidate]) -> str:
+    """What comes nearest, as a further sentence, where nothing is confirmed; empty where nothing comes near."""
+    nearest = nearest_one(ranked) if first.verdict == "nothing" else None
+    return "" if nearest is None else f" {nearest_in_words(nearest)}"
 
 
 def _hidden_rivals(first: Answer, fit: Fit, left_out: Collection[str]) -> str:

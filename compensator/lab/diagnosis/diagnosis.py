@@ -45,6 +45,7 @@ class Candidate:
         refused: why it is not the answer though its own numbers confirm it; empty where nothing speaks against it.
         errors: held out, with it, of its family's rows; None of starts from rest.
         impossible: why its size, sign or shape are not physical, in words; empty where they are.
+        badge: the same in two or three words.
         rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
     """
 
@@ -62,6 +63,7 @@ class Candidate:
     refused: str = ""
     impossible: str = ""
     errors: HeldOut | None = field(default=None, repr=False)
+    badge: str = ""
 
     @property
     def physical(self) -> bool:

@@ -7,7 +7,7 @@ import numpy as np
 from compensator.lab import progress
 from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.physical import why_not_physical
+from compensator.lab.diagnosis.physical import badge_of, why_not_physical
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import MotionRows
@@ -148,5 +148,6 @@ def _candidate(
         picture=picture_of(gathered, item),
         errors=after,
         impossible=why_not_physical(gathered, item),
+        badge=badge_of(gathered, item),
         rows=gathered.show_in,
     )

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
-from compensator.lab.diagnosis.confirmation import is_confirmed, is_sure
+from compensator.lab.diagnosis.confirmation import LUCK_AMONG_ALL, is_confirmed, is_sure
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import FORMULA_SHARE, as_in_the_ladder, best_shapes, examine, explains
 from compensator.lab.diagnosis.physical import (
@@ -102,7 +102,7 @@ class _Family:
         if not is_confirmed(candidate):
             return ""
         if own_chance > SIGNIFICANT:
-            return "may be luck among all that was tried"
+            return LUCK_AMONG_ALL
         if self._is_shadow(best):
             return f"explains little beside {self.most.block.name}, which cannot be it"
         explained = fit_effects(fit, [*fit.names, candidate.effect.name])
@@ -157,6 +157,6 @@ class _Family:
     def nothing(self, generic: Screening | None) -> Answer:
         """That no effect is confirmed, and what is left all the same, where free curves are asked for."""
         p_value = self.named.p_value
-        left = None if generic is None else without_a_name(self.gathered, generic, p_value)
+        left = None if generic is None else without_a_name(self.gathered, generic)
         sentence = left or nothing_in_words(p_value, self.gathered.stretches)
         return Answer("nothing", sentence, p_value, self.examined, None, [], remains=left is not None)

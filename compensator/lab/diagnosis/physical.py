@@ -3,24 +3,45 @@
 import numpy as np
 
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.effects.effect import Parameter, shape_parameters
+from compensator.lab.effects.effect import Effect, Parameter, Shape, shape_parameters
 from compensator.lab.model.fitted import Fit
+from compensator.lab.recordings.facts import EffortQuantity
 from compensator.lab.recordings.recording import BoolArray, FloatArray
+from compensator.lab.rows.dataset import Dataset
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence
 
 UNSURE = 2.0  # standard errors: a coefficient so near to a bound may lie on either side of it
-TOLD = "the rig tells of as much already"
+TOLD = "known from the rig"
+END_OF_SCAN, SIGN, SIZE, SMALL = "limit of the scan", "unphysical sign", "unphysical size", "too small"
 ROUNDING = 1e-6  # of a shape that was looked for by its logarithm
 
 
 def why_not_physical(gathered: Candidates, item: Evidence) -> str:
     """Why size, sign or shape are such that it cannot be the effect, in words; empty where it can."""
-    if is_past_scan(gathered, item):
-        return f"{_shape(gathered, item, int(np.argmax(_past(gathered, item))))} is the most that it can be"
-    if is_before_scan(gathered, item):
-        return f"{_shape(gathered, item)} is the least that it can be"
-    return why_not_possible(gathered, item)
+    return _end_of_scan(*_shaped(gathered, item)) or why_not_possible(gathered, item)
+
+
+def badge_of(gathered: Candidates, item: Evidence) -> str:
+    """The same in two or three words; empty where it can be the effect."""
+    if not why_not_physical(gathered, item):
+        return ""
+    if _end_of_scan(*_shaped(gathered, item)):
+        return END_OF_SCAN
+    if not is_within_bounds(gathered, item):
+        found = gathered.bases[item.block.base].coefficients(item.block.columns)
+        lows = [low for low, _ in effect_named(item.block.name).ranges_in(_quantity(gathered))]
+        return SIGN if any(value < 0.0 <= low for value, low in zip(found, lows, strict=True)) else SIZE
+    return SMALL if is_too_small(gathered, item) else TOLD
+
+
+def why_at_end(fit: Fit, name: str) -> str:
+    """Why the shape of an effect in a fitted model cannot be its own, in words; empty where it can.
+
+    It lies at an end of a scan of all that the effect can be.
+    """
+    term = next(term for term in fit.terms if term.effect.name == name)
+    return _end_of_scan(term.effect, fit.dataset, term.shape)
 
 
 def why_impossible(fit: Fit, name: str) -> str:
@@ -50,31 +71,29 @@ def why_not_possible(gathered: Candidates, item: Evidence) -> str:
     if is_too_small(gathered, item):
         return f"it would be under {effect_named(item.block.name).least_of_friction:.0%} of dry friction"
     if is_told(gathered, item):
-        return f"{TOLD} ({_shape(gathered, item)})"
+        return f"{TOLD} ({_shape(*_shaped(gathered, item))})"
     return ""
 
 
-def _shape(gathered: Candidates, item: Evidence, at: int = 0) -> str:
+def _shape(effect: Effect, dataset: Dataset, shape: Shape, at: int = 0) -> str:
     """A value of its shape, in words."""
-    effect = effect_named(item.block.name)
     one = shape_parameters(effect.shape_names, effect.shape_units)[at]
-    return f"{one.name} {_with_unit(gathered, item.block.shape[at], one)}"
+    return f"{one.name} {_with_unit(dataset, shape[at], one)}"
 
 
 def _size(gathered: Candidates, item: Evidence) -> str:
     """Its coefficients that are beyond what they can be, freely fitted, in words."""
-    effect = effect_named(item.block.name)
-    ranges = effect.ranges_in(gathered.fit.dataset.effort_definition.quantity)
+    effect, dataset, _ = _shaped(gathered, item)
+    ranges = effect.ranges_in(_quantity(gathered))
     found = gathered.bases[item.block.base].coefficients(item.block.columns)
     return ", ".join(
-        f"{_with_unit(gathered, value, one)}, allowed {low:.3g} {'or more' if np.isinf(high) else f'to {high:.3g}'}"
+        f"{_with_unit(dataset, value, one)}, allowed {low:.3g} {'or more' if np.isinf(high) else f'to {high:.3g}'}"
         for one, value, (low, high) in zip(effect.parameters, found, ranges, strict=True)
         if not low <= value <= high
     )
 
 
-def _with_unit(gathered: Candidates, value: float, parameter: Parameter) -> str:
-    dataset = gathered.fit.dataset
+def _with_unit(dataset: Dataset, value: float, parameter: Parameter) -> str:
     unit = parameter.unit_in(dataset.effort_definition.unit, dataset.facts.position_unit)
     return f"{value:.3g}" if unit in ("", "1") else f"{value:.3g} {unit}"
 
@@ -86,7 +105,7 @@ def is_told(gathered: Candidates, item: Evidence) -> bool:
 
 def is_within_bounds(gathered: Candidates, item: Evidence) -> bool:
     """Whether the freely fitted coefficients lie within the effect's bounds, as far as the rows can tell."""
-    ranges = effect_named(item.block.name).ranges_in(gathered.fit.dataset.effort_definition.quantity)
+    ranges = effect_named(item.block.name).ranges_in(_quantity(gathered))
     found = gathered.bases[item.block.base].coefficients(item.block.columns)
     unsure = UNSURE * _standard_error(item, found)
     return all(low - unsure <= c <= high + unsure for (low, high), c in zip(ranges, found, strict=True))
@@ -100,17 +119,7 @@ def is_too_small(gathered: Candidates, item: Evidence) -> bool:
 
 def is_past_scan(gathered: Candidates, item: Evidence) -> bool:
     """Whether the shape lies at an upper end of a scan of all that the effect can be: what fits there goes on."""
-    return bool(np.any(_past(gathered, item)))
-
-
-def _past(gathered: Candidates, item: Evidence) -> BoolArray:
-    """Which of the shape's first values lie there, shape (values,)."""
-    ends, within = _scanned(gathered, item), effect_named(item.block.name).ends_within_scan
-    if len(ends) == 0:
-        return np.zeros(0, dtype=bool)
-    shape = np.array(item.block.shape)[:within]
-    past: BoolArray = shape >= (1.0 - ROUNDING) * np.max(ends, axis=0)[:within]
-    return past
+    return bool(np.any(_past(*_shaped(gathered, item))))
 
 
 def is_before_scan(gathered: Candidates, item: Evidence) -> bool:
@@ -118,19 +127,48 @@ def is_before_scan(gathered: Candidates, item: Evidence) -> bool:
 
     There something shorter fits as well, and it cannot be told from what the measuring chain makes of a sign.
     """
-    ends, effect = _scanned(gathered, item), effect_named(item.block.name)
+    return _before(*_shaped(gathered, item))
+
+
+def _end_of_scan(effect: Effect, dataset: Dataset, shape: Shape) -> str:
+    """At which end of a scan of all that the effect can be a shape lies, in words; empty where it lies within."""
+    past = _past(effect, dataset, shape)
+    if np.any(past):
+        return f"{_shape(effect, dataset, shape, int(np.argmax(past)))} is the most that it can be"
+    if _before(effect, dataset, shape):
+        return f"{_shape(effect, dataset, shape)} is the least that it can be"
+    return ""
+
+
+def _past(effect: Effect, dataset: Dataset, shape: Shape) -> BoolArray:
+    """Which of the shape's first values lie at an upper end, shape (values,)."""
+    ends, within = _scanned(effect, dataset, shape), effect.ends_within_scan
+    if len(ends) == 0:
+        return np.zeros(0, dtype=bool)
+    past: BoolArray = np.array(shape)[:within] >= (1.0 - ROUNDING) * np.max(ends, axis=0)[:within]
+    return past
+
+
+def _before(effect: Effect, dataset: Dataset, shape: Shape) -> bool:
+    ends, within = _scanned(effect, dataset, shape), effect.ends_within_scan
     if len(ends) == 0:
         return False
-    within = effect.ends_within_scan
-    return bool(np.all(np.array(item.block.shape)[:within] <= (1.0 + ROUNDING) * np.min(ends, axis=0)[:within]))
+    return bool(np.all(np.array(shape)[:within] <= (1.0 + ROUNDING) * np.min(ends, axis=0)[:within]))
 
 
-def _scanned(gathered: Candidates, item: Evidence) -> FloatArray:
+def _scanned(effect: Effect, dataset: Dataset, shape: Shape) -> FloatArray:
     """Shapes (s, values) that a scan of all that the effect can be holds; none where a scan does not hold all."""
-    effect = effect_named(item.block.name)
-    if not effect.ends_within_scan or not item.block.shape:
+    if not effect.ends_within_scan or not shape:
         return np.empty((0, 0))
-    return np.array(effect.shapes(gathered.fit.dataset.trials[0].motion))
+    return np.array(effect.shapes(dataset.trials[0].motion))
+
+
+def _shaped(gathered: Candidates, item: Evidence) -> tuple[Effect, Dataset, Shape]:
+    return effect_named(item.block.name), gathered.fit.dataset, item.block.shape
+
+
+def _quantity(gathered: Candidates) -> EffortQuantity:
+    return gathered.fit.dataset.effort_definition.quantity
 
 
 def _standard_error(item: Evidence, coefficients: FloatArray) -> float:

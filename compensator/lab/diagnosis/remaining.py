@@ -18,24 +18,23 @@ from compensator.lab.screening.evidence import Screening, screen
 from compensator.lab.screening.gathering import gather_curves
 
 
-def without_a_name(gathered: Candidates, generic: Screening, p_value: float) -> str | None:
+def without_a_name(gathered: Candidates, generic: Screening) -> str | None:
     """What a model leaves in which no effect is confirmed, in words; None where it is no more than noise.
 
     Args:
         gathered: the model, and what it may be missing, on the rows that are judged.
         generic: evidence for free curves.
-        p_value: of the effects.
     """
     fit = gathered.fit
     if (bursts := large_bursts(gathered)) is not None:
-        return bursts_in_words(bursts, [_trial_names(fit)[index] for index in bursts.trials], p_value)
+        return bursts_in_words(bursts, [_trial_names(fit)[index] for index in bursts.trials])
     left = left_over(gathered)
     if not left.is_more_than_noise:
         return None
     # the best curve, where the evidence pays for it, though it may not hold on other rows
     driver = next((one.block.name for one in generic.evidence[:1] if one.score > 0.0), None)
     facts, wanders = fit.dataset.facts, _wanders(fit, left)
-    return unexplained_in_words(left, driver, p_value, gathered.stretches, facts, wanders)
+    return unexplained_in_words(left, driver, gathered.stretches, facts, wanders)
 
 
 def what_remains(fit: Fit, show_in: MotionRows, name: str) -> list[Note]:

@@ -51,6 +51,14 @@ def nothing_in_words(p_value: float, stretches: int | None = None) -> str:
     )
 
 
+def nearest_in_words(nearest: Candidate) -> str:
+    """What comes nearest where no effect is confirmed, and what would decide."""
+    return (
+        f"The nearest is {nearest.effect.title.lower()} ({nearest.gain.in_words(nearest.before, nearest.after)}); to "
+        f"decide, record more of: {nearest.effect.excited_by}."
+    )
+
+
 def named_in_words(best: Candidate, of: str) -> str:
     """That an effect is missing, or likely, where its gain on other trials is not sure; and what it may be instead.
 

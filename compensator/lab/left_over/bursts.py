@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.chance import chance_in_words
 from compensator.lab.left_over.remainder import remainder_of
 from compensator.lab.model.weights import bounded_influence
 from compensator.lab.recordings.recording import BoolArray, FloatArray
@@ -102,11 +101,11 @@ def some_of(names: Sequence[str]) -> str:
     return ", ".join(names[:MOST_NAMES]) + more
 
 
-def bursts_in_words(bursts: Bursts, trials: Sequence[str], p_value: float) -> str:
+def bursts_in_words(bursts: Bursts, trials: Sequence[str]) -> str:
     """The answer where a few stretches leave far more than the others."""
     return (
-        f"No effect of the catalogue is confirmed ({chance_in_words(p_value)}), yet what is left "
-        f"comes in bursts, {bursts.of_effort:.1%} of the effort: {bursts.stretches} of {bursts.of} stretches of "
+        f"No effect of the catalogue is confirmed, yet what is left comes in bursts, "
+        f"{bursts.of_effort:.1%} of the effort: {bursts.stretches} of {bursts.of} stretches of "
         f"{BLOCK_S:g} s scatter up to {bursts.largest:.1f} times as much as the others, in {some_of(trials)}. "
         "Something slips, skips or catches there: look at couplings, clutch and cables, and repeat one of these "
         "trials with less load."

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from compensator.lab.chance import SIGNIFICANT, chance_in_words
+from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.constants import Constants
 from compensator.lab.left_over.error_budget import PLAIN, WANDERING_BESIDE_A_NAME
@@ -83,20 +83,19 @@ def _is_plain(fit: Fit) -> bool:
     return all(effect.name in plain or effect.pipeline for effect in fit.effects)
 
 
-def unexplained_in_words(
-    left: LeftOver, driver: str | None, p_value: float, stretches: int, facts: Facts, wanders: str
-) -> str:
+def unexplained_in_words(left: LeftOver, driver: str | None, stretches: int, facts: Facts, wanders: str) -> str:
     """The answer where something is left that no effect and no curve explains.
+
+    The chance of a diagnosis is that of its effects, which did not tell of it, and is left out.
 
     Args:
         left: what it is.
         driver: that it varies with most; None where it varies with none.
-        p_value: as in a diagnosis.
         stretches: independent stretches of BLOCK_S that it rests on.
         facts: of the joint.
         wanders: what is another one for seconds, in words; empty where nothing is.
     """
-    none = f"No effect of the catalogue is confirmed ({chance_in_words(p_value)})"
+    none = "No effect of the catalogue is confirmed"
     if least_p_value(stretches) > SIGNIFICANT:
         none = f"{stretches} stretches of {BLOCK_S:g} s are too few to name an effect"
     if left.line is not None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
+from compensator.lab.chance import chance_in_words
 from compensator.lab.diagnosis import diagnose as diagnose_module
 from compensator.lab.diagnosis import four_families
 from compensator.lab.diagnosis.data_checks import data_problems
@@ -278,7 +279,10 @@ def test_nothing_is_named_while_all_screenings_together_may_be_luck(monkeypatch,
     """A name pays for all screenings; that nothing is named says the chance as it is."""
     found = with_luck(monkeypatch, p_value)
     assert found.verdict == verdict
-    assert words in found.sentence
+    assert chance_in_words(found.p_value) == words
+    # that more than noise is left is not told by this chance
+    assert (words in found.sentence) == (verdict == "missing")
+    assert ("The nearest is weight-dependent friction" in found.sentence) == (verdict == "nothing")
 
 
 def test_constant_temperature_is_left_out_with_its_reason():

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import examination
-from compensator.lab.diagnosis.confirmation import doubts, is_confirmed
+from compensator.lab.diagnosis.confirmation import doubts, is_confirmed, nearest_one
 from compensator.lab.diagnosis.diagnosis import Candidate
+from compensator.lab.diagnosis.wording import nearest_in_words
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.gain import Gain
 from compensator.lab.screening.base import Block
@@ -63,6 +64,35 @@ def test_what_a_candidate_lacks_is_told(changed, doubt):
     found = replace(one, **changed)
     assert doubts(found) == doubt
     assert is_confirmed(found) == (not doubt)
+
+
+SURE = Gain(0.0166, 0.0027, 0.0406)
+NOT_SURE = Gain(0.0166, -0.01, 0.0406)
+
+
+@pytest.mark.parametrize(
+    ("changed", "near"),
+    [
+        ({"refused": "may be luck among all that was tried"}, True),
+        ({"p_value": 0.02}, True),
+        ({"gain": NOT_SURE}, True),
+        ({"p_value": 0.02, "score": 9.0}, False),
+        ({"p_value": 0.02, "impossible": "known from the rig"}, False),  # no more data would confirm it
+        ({"p_value": 0.02, "gain": Gain(0.001, -0.01, 0.01)}, False),
+        ({"refused": "explains much less than spring, which cannot be it"}, False),
+    ],
+)
+def test_the_nearest_is_what_more_data_may_confirm(changed, near):
+    candidate = replace(
+        Candidate(effect_named("viscous_asymmetry"), (), 14.9, 0.001, 4.1, (), 0.009, 0.0088, SURE, None), **changed
+    )
+    weaker = replace(candidate, effect=effect_named("spring"), score=0.9 * candidate.score)
+    found = nearest_one([weaker, candidate])
+    assert (found is candidate) == near
+    if found is not None:
+        words = nearest_in_words(found)
+        assert words.startswith("The nearest is direction-asymmetric viscous friction (gain 1.7%, 90 % interval")
+        assert words.endswith("to decide, record more of: several speeds in both directions.")
 
 
 @pytest.mark.parametrize("rows", ["sliding", "moving"])

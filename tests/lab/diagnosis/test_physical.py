@@ -8,12 +8,15 @@ import pytest
 
 from compensator.lab.diagnosis import physical
 from compensator.lab.diagnosis.physical import (
+    badge_of,
     is_before_scan,
     is_past_scan,
     is_within_bounds,
+    why_at_end,
     why_not_physical,
     why_not_possible,
 )
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.evidence import Evidence
@@ -111,18 +114,31 @@ def test_friction_that_rises_over_a_session_is_no_warm_up(excess, possible):
 
 
 @pytest.mark.parametrize(
-    ("name", "shape", "share", "why"),
+    ("name", "shape", "share", "why", "badge"),
     [
-        ("backlash", (0.009,), 1.0, "the rig tells of as much already (free play 0.009 rad)"),
-        ("backlash", (0.011,), 1.0, ""),
-        ("backlash", (0.011,), -0.5, "it would be -0.5, allowed 0.3 to 3"),
-        ("elasticity", (20.0, 0.7, 0.4), 1.0, "its damping, of critical 0.7 is the most that it can be"),
-        ("pre_sliding", (2e-4,), 1.0, "pre-sliding distance 0.0002 rad is the least that it can be"),
-        ("pre_sliding", (2e-3,), -1.0, "it would be -1 N m, allowed 0 or more"),
-        ("pre_sliding", (2e-3,), 0.01, "it would be under 50% of dry friction"),
+        ("backlash", (0.009,), 1.0, "known from the rig (free play 0.009 rad)", "known from the rig"),
+        ("backlash", (0.011,), 1.0, "", ""),
+        ("backlash", (0.011,), 5.0, "it would be 5, allowed 0.3 to 3", "unphysical size"),
+        ("backlash", (0.011,), -0.5, "it would be -0.5, allowed 0.3 to 3", "unphysical sign"),
+        (
+            "elasticity",
+            (20.0, 0.7, 0.4),
+            1.0,
+            "its damping, of critical 0.7 is the most that it can be",
+            "limit of the scan",
+        ),
+        (
+            "pre_sliding",
+            (2e-4,),
+            1.0,
+            "pre-sliding distance 0.0002 rad is the least that it can be",
+            "limit of the scan",
+        ),
+        ("pre_sliding", (2e-3,), -1.0, "it would be -1 N m, allowed 0 or more", "unphysical sign"),
+        ("pre_sliding", (2e-3,), 0.01, "it would be under 50% of dry friction", "too small"),
     ],
 )
-def test_what_is_impossible_about_it_is_told_with_its_number(name, shape, share, why):
+def test_what_is_impossible_about_it_is_told_with_its_number(name, shape, share, why, badge):
     column = np.sin(np.arange(200.0))
     item = Evidence(Block(name, column[:, None], 0, 15, shape), 50.0, 4000.0, 0.001, column)
     told = Facts(backlash_rad=0.005)
@@ -135,3 +151,16 @@ def test_what_is_impossible_about_it_is_told_with_its_number(name, shape, share,
     fit = SimpleNamespace(dataset=dataset, dry_friction=0.1)
     gathered: Any = SimpleNamespace(bases=[Base(np.zeros((200, 1)), share * column)], fit=fit, show_in="sliding")
     assert why_not_physical(gathered, item) == why
+    assert badge_of(gathered, item) == badge
+
+
+@pytest.mark.parametrize(("distance_rad", "why"), [(0.2, "pre-sliding distance 0.2 rad is the most"), (0.02, "")])
+def test_a_shape_of_a_fitted_model_at_an_end_of_its_scan_says_so(distance_rad, why):
+    motion = SimpleNamespace(position_span=2.0)
+    dataset = SimpleNamespace(
+        effort_definition=SimpleNamespace(unit="N m"), facts=Facts(), trials=[SimpleNamespace(motion=motion)]
+    )
+    term = SimpleNamespace(effect=effect_named("pre_sliding"), shape=(distance_rad,))
+    fit: Any = SimpleNamespace(terms=(term,), dataset=dataset)
+    assert why_at_end(fit, "pre_sliding").startswith(why)
+    assert bool(why_at_end(fit, "pre_sliding")) == bool(why)

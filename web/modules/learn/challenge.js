@@ -3,7 +3,7 @@
 import { get, post } from "../app/api.js";
 import { attempt, patiently } from "../ui/attempt.js";
 import { h, replace, table } from "../ui/dom.js";
-import { number, percent, when } from "../ui/format.js";
+import { number, when } from "../ui/format.js";
 
 const LEVELS = { easy: "easy: at most one, large", medium: "medium: up to two", hard: "hard: up to two, small, noisy recordings" };
 
@@ -80,10 +80,11 @@ function verdict(told) {
   const line = (text, names) => names.length > 0 && h("p", {}, `${text}: ${names.join(", ").replaceAll("_", " ")}.`);
   return [h("div", { class: told.perfect ? "revealed good" : "revealed problem", role: "status" }, told.sentence), line("Right", told.right), line("Missed", told.missed),
     line("In every recording, whatever is hidden", told.recorded), line("Not there", told.wrong), line("Hidden, but no recording of motion can tell it from what every model has", told.untold),
+    line("Hidden, but too little of it in these recordings to count as missed", told.faint),
     told.hidden.length > 0 && table("What was hidden", [
       { title: "Mechanism", cell: (one) => one.title },
       { title: "In the catalogue", cell: (one) => (one.effects.length ? one.effects.map((name) => h("a", { href: `#learn/${name}` }, `${name.replaceAll("_", " ")} `)) : "none of these") },
       { title: "Size", cell: (one) => `${number(one.size, 3)} ${one.unit === "1" ? "" : one.unit} (${one.measure})` },
-      { title: "Share of the effort", number: true, cell: (one) => percent(one.share, 1) },
-    ], told.hidden)];
+      { title: "Share of the effort", number: true, cell: (one) => one.share_words },
+    ], told.hidden), told.hidden.length > 0 && h("p", { class: "soft" }, "Share of the effort: rms of what the mechanism changes in the motor current of the motions, over the rms of that current; what two runs of one joint differ by anyway is taken off.")];
 }

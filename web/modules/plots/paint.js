@@ -9,6 +9,7 @@ const RIGHT = 10;
 const TOP = 8;
 const BOTTOM = 34;
 const BETWEEN = 16;
+const EDGE = 2; // of the picture, that words keep clear of
 const NOTHING = [0, 1];
 
 // where row `index` of `count` stands in a picture of that size
@@ -34,7 +35,7 @@ export function paint(context, { width, height, view, content, theme, pointer, p
     const { lines, bands } = of(content, index);
     const range = rangeOf(lines, bands, view, box, row.least);
     grid(context, box, range, view, theme, index === content.rows.length - 1);
-    title(context, row.title, box, theme);
+    title(context, row.title, box, theme, content.rows.length > 1 ? box.bottom - box.top + BETWEEN : height);
     clipped(context, box, () => {
       for (const shade of content.shades ?? []) shaded(context, shade, view, box, theme);
       for (const band of bands) banded(context, band, view, range, box, pixel);
@@ -47,7 +48,13 @@ export function paint(context, { width, height, view, content, theme, pointer, p
   context.fillStyle = theme.text;
   context.textAlign = "center";
   context.textBaseline = "alphabetic";
-  context.fillText(content.xTitle, (LEFT + width - RIGHT) / 2, height - 4);
+  words(context, content.xTitle, (LEFT + width - RIGHT) / 2, height - 4, width);
+}
+
+// centred where that fits between 0 and `room`, else moved; what is longer than that is drawn narrower
+function words(context, text, centre, y, room) {
+  const half = Math.min(context.measureText(text).width, room - 2 * EDGE) / 2;
+  context.fillText(text, Math.min(Math.max(centre, half + EDGE), room - half - EDGE), y, room - 2 * EDGE);
 }
 
 function of(content, index) {
@@ -115,14 +122,17 @@ function grid(context, box, range, view, theme, last) {
   }
 }
 
-function title(context, text, box, theme) {
+// room: how much of the picture's height it may take, about the middle of its row
+function title(context, text, box, theme, room) {
+  const middle = (box.top + box.bottom) / 2;
+  const top = Math.max(0, middle - room / 2);
   context.save();
-  context.translate(11, (box.top + box.bottom) / 2);
+  context.translate(11, top + room);
   context.rotate(-Math.PI / 2);
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.fillStyle = theme.text;
-  context.fillText(text, 0, 0);
+  words(context, text, top + room - middle, 0, room);
   context.restore();
 }
 

@@ -5,7 +5,11 @@ import { interval, percent, spoken } from "../ui/format.js";
 
 export function beforeAfter(place, result, { undo }) {
   const highest = Math.max(result.before.held_out ?? 0, result.after.held_out ?? 0, result.before.training ?? 0, result.after.training ?? 0) || 1;
-  const rows = [["held-out error before", result.before.held_out, "purple"], ["held-out error after", result.after.held_out, "blue"],
+  // an effect with memory is judged on more rows than the ladder counts: each error says which it is of
+  const wider = result.rows !== result.ladder_rows;
+  const of = (rows) => (wider ? `, ${rows}` : "");
+  const inLadder = wider ? [[`held-out error before${of(result.ladder_rows)}`, result.ladder_before, "purple"], [`held-out error after${of(result.ladder_rows)}`, result.ladder_after, "blue"]] : [];
+  const rows = [[`held-out error before${of(result.rows)}`, result.before.held_out, "purple"], [`held-out error after${of(result.rows)}`, result.after.held_out, "blue"], ...inLadder,
     ["training error before", result.before.training, "purple"], ["training error after", result.after.training, "blue"]];
   replace(place, h("div", { class: "good", role: "status" }, spoken(result.sentence)),
     h("div", { class: "bars" }, rows.map(([text, value, colour]) => bar(text, value, highest, colour))),

@@ -52,7 +52,7 @@ function className(one) {
 
 function card(parent, one, ways) {
   const candidate = one.in_class && !ways.slight;
-  const badges = [candidate && h("span", { class: "badge completed" }, "candidate"), one.physical ? null : h("span", { class: "badge stale" }, "unphysical sign")];
+  const badges = [candidate && h("span", { class: "badge completed" }, "candidate"), one.badge && h("span", { class: "badge stale" }, one.badge)];
   article(parent, one, { badges, words: evidence(one), name: "with the effect", action: `Add ${one.title}`, primary: candidate }, ways);
 }
 
@@ -91,14 +91,32 @@ async function look(place, { effect, title }, { path, linked, model_id, button }
   series.showMoment(found.items[0], { focus: false });
 }
 
+const NEXT_TO_NOTHING = 5e-4; // of the error: less is shown as no change
+const SURE = 6; // d′ from which a name is sure
+
 // the evidence in words, the numbers behind it in brackets
 export function evidence(one) {
-  const gain = `The held-out error would ${one.gain >= 0 ? "fall" : "rise"} by ${interval(Math.abs(one.gain), ...ends(one), (value) => percent(value, 1))}.`;
-  const sure = one.gain_low > 0 ? "All of the interval is a gain." : "The interval includes no gain at all.";
   const chance = one.p_value === null || one.p_value === undefined ? "" : ` Of this effect alone, chance would do as well with p ${chanceIs(one.p_value)}.`;
   const lacks = one.why_not.length ? ` Not named: ${one.why_not.join(", ")}.` : "";
-  const like = one.confused_with.length ? ` These data confuse it with ${spaced(one.confused_with).join(", ")} (d′ = ${number(one.d_prime, 2)}; from 6 on the name is sure).` : "";
-  return `${gain} ${sure}${chance}${lacks}${like}`;
+  return `${gained(one)}${chance}${lacks}${one.confused_with.length ? ` ${alike(one)}` : ""}`;
+}
+
+function gained(one) {
+  const [low, high] = ends(one);
+  const show = (value) => percent(value, 1);
+  if (Math.abs(one.gain) < NEXT_TO_NOTHING) {
+    const wide = Math.max(Math.abs(low ?? 0), Math.abs(high ?? 0)) >= NEXT_TO_NOTHING;
+    return `No change of the held-out error${wide ? ` (${show(one.gain_low)} to ${show(one.gain_high)} less)` : ""}.`;
+  }
+  const sure = one.gain_low > 0 ? "All of the interval is a gain." : "The interval includes no gain at all.";
+  return `The held-out error would ${one.gain >= 0 ? "fall" : "rise"} by ${interval(Math.abs(one.gain), low, high, show)}. ${sure}`;
+}
+
+// an effect that is sure of its name may still take the evidence of another one away
+function alike({ confused_with, d_prime }) {
+  const names = spaced(confused_with).join(", ");
+  if (d_prime >= SURE) return `With it in the model, little is left that speaks for ${names}; its own curve is told from theirs (d′ = ${number(d_prime, 2)}).`;
+  return `These data confuse it with ${names} (d′ = ${number(d_prime, 2)}; from ${SURE} on the name is sure).`;
 }
 
 function ends({ gain, gain_low: low, gain_high: high }) {

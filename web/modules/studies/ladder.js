@@ -60,8 +60,8 @@ function rungTable(ladder, current) {
   const rows = ladder.rungs.map((rung) => ({ ...rung, chosen: rung.model_id === current }));
   return table("Ladder", [
     { title: "Model", cell: rungName },
-    { title: "Training error", number: true, cell: (rung) => percent(rung.training) },
-    { title: "Held-out error", number: true, cell: (rung) => interval(rung.held_out, rung.held_out_low, rung.held_out_high) },
+    { title: `Training error, ${ladder.rows}`, number: true, cell: (rung) => percent(rung.training) },
+    { title: `Held-out error, ${ladder.rows}`, number: true, cell: (rung) => interval(rung.held_out, rung.held_out_low, rung.held_out_high) },
     ...(rows.some((rung) => rung.breakaway) ? [{ title: "Breakaway, held out", number: true, cell: (rung) => percent(rung.breakaway?.held_out) }] : []),
     ...(rows.some((rung) => rung.motion) ? [{ title: "Position in closed loop, rms", number: true, cell: (rung) => (rung.motion ? `${number(rung.motion.position, 3)} ${rung.motion.unit}` : "") }] : []),
   ], rows);
