@@ -160,7 +160,7 @@ def at_rest_in_words(found: RestComparison, unit: str) -> str:
         todo = (
             "diagnose it from the starts that are there: it may grow with rest, load or rate"
             if found.by_starts
-            else "record breakaway ramps at several rates and rests"
+            else "it may rise at speeds below the slowest that slid: record breakaway ramps at several rates and rests"
         )
         return f"{told}: static friction is more than this model has; {todo}."
     return (

@@ -107,6 +107,6 @@ def bursts_in_words(bursts: Bursts, trials: Sequence[str]) -> str:
         f"No effect of the catalogue is confirmed, yet what is left comes in bursts, "
         f"{bursts.of_effort:.1%} of the effort: {bursts.stretches} of {bursts.of} stretches of "
         f"{BLOCK_S:g} s scatter up to {bursts.largest:.1f} times as much as the others, in {some_of(trials)}. "
-        "Something slips, skips or catches there: look at couplings, clutch and cables, and repeat one of these "
-        "trials with less load."
+        "Something slips, skips, catches or swings there: look at couplings, clutch, cables and the load, and repeat "
+        "one of these trials with less load."
     )
