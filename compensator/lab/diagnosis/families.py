@@ -23,6 +23,7 @@ from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence, Screening, among_all, kept_evidence
 
 FEWEST_SHOWN = 2
+SHARE_NEAR_REVERSALS = 0.9  # as FORMULA_SHARE: there every effect has a little of what any other explains
 
 
 def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> Answer:
@@ -121,8 +122,9 @@ class _Family:
         return Answer("missing", sentence, own_chance, examined, None, notes, remains, explained, evidence)
 
     def _is_shadow(self, one: Evidence) -> bool:
-        """Whether what explains most, though it cannot be the effect, explains most of what this one does."""
-        if one.block.name == self.most.block.name:
+        """Whether what explains more, though it cannot be the effect, explains most of what this one does."""
+        enough = FORMULA_SHARE if self.gathered.show_in == "sliding" else SHARE_NEAR_REVERSALS
+        if one.noncentrality >= enough * self.most.noncentrality:
             return False
         beside = self.gathered.with_block(self.most.block).bases
         return explains(kept_evidence(beside, [one.block], self.gathered.noise), one)

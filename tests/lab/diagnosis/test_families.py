@@ -1,6 +1,7 @@
 """What one family of effects says: a name must hold with all shapes found anew, as its model has them."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from compensator.lab.model.fit import fit_effects, fit_model, widened
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.between_scanned import with_shapes_between
 from compensator.lab.screening.evidence import screen, screen_against_noise
 from compensator.lab.screening.gathering import gather, with_noise
@@ -75,8 +77,7 @@ def test_in_steady_sliding_a_name_must_hold_in_the_model_that_would_be_had(monke
 @pytest.mark.parametrize(
     ("extra", "cannot_be", "verdict", "first"),
     [
-        (lambda x: 0.02 * x.q + 0.01 * np.sin(7.0 * x.q), "spring", "missing", "cogging"),  # there, too
-        (lambda x: 0.02 * x.q, "spring", "nothing", "spring"),
+        (lambda x: 0.02 * x.q, "spring", "missing", "cogging"),
         (lambda x: 0.02 * np.sin(3.0 * x.q), "cogging", "nothing", "cogging"),  # what is next is but its shadow
     ],
 )
@@ -116,3 +117,21 @@ def test_what_a_shape_of_the_model_has_taken_is_looked_for_with_all_shapes_anew(
     found = diagnose(fit)
     assert (found.verdict, found.candidates[0].effect.name) == ("missing", "spring"), found.sentence
     assert found.candidates[0].gain.value > 0.1
+
+
+@pytest.mark.parametrize(("alike", "is_shadow"), [(0.0, False), (0.95, True)])
+def test_what_explains_less_is_a_shadow_where_it_keeps_little_beside_what_explains_most(alike, is_shadow):
+    random = np.random.default_rng(6)
+    large, own, noise = random.standard_normal((3, 600))
+    base = Base(np.empty((600, 0)), 3.0 * large + own + noise)
+    less = alike * large + np.sqrt(1.0 - alike**2) * (random.standard_normal(600) if alike else own)
+    blocks = [Block("spring", large[:, None], 0, 1), Block("cogging", less[:, None], 0, 1)]
+    shapes = screen([base], blocks, np.arange(600) // 20).evidence
+    gathered = SimpleNamespace(
+        show_in="moving", noise=None, with_block=lambda block: SimpleNamespace(bases=[base.extended(block.columns)])
+    )
+    family = families._Family(None, gathered, None, shapes, [])
+    assert [one.block.name for one in shapes] == ["spring", "cogging"]
+    assert shapes[1].noncentrality < families.SHARE_NEAR_REVERSALS * shapes[0].noncentrality
+    assert not family._is_shadow(shapes[0])
+    assert family._is_shadow(shapes[1]) == is_shadow
