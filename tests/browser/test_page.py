@@ -14,6 +14,16 @@ def held_out_errors(page) -> list[float]:
     return [float(cell.split(" ")[0]) for cell in cells]
 
 
+def wait_until_recorded(service, page) -> None:
+    """Rows of the trial: one that is stopped before its first has no picture."""
+    for _ in range(300):
+        reading = service.runner.status().reading
+        if reading is not None and reading.time_s > 0.1:
+            return
+        page.wait_for_timeout(50)
+    raise AssertionError("no row came")
+
+
 def test_the_technician_starts_watches_and_stops(service, open_page):
     page = open_page(token=False)
     page.get_by_text("SIMULATED", exact=True).wait_for()
@@ -25,6 +35,7 @@ def test_the_technician_starts_watches_and_stops(service, open_page):
     page.locator(".badge.running").wait_for()
     page.get_by_label("Live").locator(".legend-entry").get_by_text("current from duty").wait_for()
     assert page.get_by_label("Live").locator(".legend-entry").count() >= 3
+    wait_until_recorded(service, page)
     page.keyboard.press("Escape")
     page.get_by_text("Stop accepted and confirmed: the drive is powered off").wait_for()
     page.locator(".badge.idle").wait_for()

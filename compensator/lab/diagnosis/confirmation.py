@@ -12,7 +12,6 @@ from compensator.lab.screening.evidence import VERY_STRONG
 SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
 SLIGHT_PART = 0.05  # of what effects that were added explain, root mean square: a formula is rarely right to more
 LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
-NEAR = 10.0  # score from which an effect that is not confirmed is said to be the nearest
 LUCK, LUCK_AMONG_ALL, UNSURE_GAIN = "may be luck", "may be luck among all that was tried", "gain not sure"
 LEAST_GAIN_OF_CHAIN = 0.05  # every measuring chain is a little late, and leaves a little near reversals
 
@@ -54,7 +53,7 @@ def doubts(candidate: Candidate) -> list[str]:
 def nearest_one(candidates: Sequence[Candidate]) -> Candidate | None:
     """Of effects that are not confirmed, that with the most evidence, where more data may confirm it; None without."""
     open_yet = {LUCK, LUCK_AMONG_ALL, UNSURE_GAIN}
-    near = [one for one in candidates if one.score > NEAR and set(doubts(one)) <= open_yet]
+    near = [one for one in candidates if one.score > VERY_STRONG and set(doubts(one)) <= open_yet]
     return max(near, key=lambda one: one.score, default=None)
 
 

@@ -23,7 +23,7 @@ from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence, Screening, among_all, kept_evidence
 
 FEWEST_SHOWN = 2
-SHARE_NEAR_REVERSALS = 0.9  # as FORMULA_SHARE: there every effect has a little of what any other explains
+NEARLY_ALL = 0.9  # of the evidence of what explains most
 
 
 def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> Answer:
@@ -122,12 +122,16 @@ class _Family:
         return Answer("missing", sentence, own_chance, examined, None, notes, remains, explained, evidence)
 
     def _is_shadow(self, one: Evidence) -> bool:
-        """Whether what explains more, though it cannot be the effect, explains most of what this one does."""
-        enough = FORMULA_SHARE if self.gathered.show_in == "sliding" else SHARE_NEAR_REVERSALS
-        if one.noncentrality >= enough * self.most.noncentrality:
+        """Whether what explains more, though it cannot be the effect, explains what this one does.
+
+        Near reversals every effect has a little of what any other explains: with less than nearly all of the evidence
+        it has to keep half of its own beside the other.
+        """
+        share = one.noncentrality / self.most.noncentrality if self.most.noncentrality > 0.0 else 1.0
+        if share >= (FORMULA_SHARE if self.gathered.show_in == "sliding" else NEARLY_ALL):
             return False
         beside = self.gathered.with_block(self.most.block).bases
-        return explains(kept_evidence(beside, [one.block], self.gathered.noise), one)
+        return share < FORMULA_SHARE or explains(kept_evidence(beside, [one.block], self.gathered.noise), one)
 
     def _chance_of(self, candidate: Candidate) -> float:
         """The chance that luck alone brings anything as far as this effect."""

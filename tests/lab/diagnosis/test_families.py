@@ -12,6 +12,7 @@ from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_effects, fit_model, widened
 from compensator.lab.model.gain import Gain
+from compensator.lab.model.linear import orthonormal
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.base import Base, Block
@@ -119,19 +120,27 @@ def test_what_a_shape_of_the_model_has_taken_is_looked_for_with_all_shapes_anew(
     assert found.candidates[0].gain.value > 0.1
 
 
-@pytest.mark.parametrize(("alike", "is_shadow"), [(0.0, False), (0.95, True)])
-def test_what_explains_less_is_a_shadow_where_it_keeps_little_beside_what_explains_most(alike, is_shadow):
+@pytest.mark.parametrize(
+    ("alike", "size", "rows", "is_shadow"),
+    [
+        (0.0, 1.0, "moving", False),  # all of it is its own
+        (0.9, 1.0, "moving", True),
+        (0.9, 1.0, "sliding", False),
+        (0.0, 0.4, "moving", True),  # beside so much that nothing explains, a little is no evidence
+        (0.0, 0.4, "sliding", True),
+    ],
+)
+def test_what_explains_less_is_a_shadow_where_it_keeps_little_beside_what_explains_most(alike, size, rows, is_shadow):
     random = np.random.default_rng(6)
-    large, own, noise = random.standard_normal((3, 600))
-    base = Base(np.empty((600, 0)), 3.0 * large + own + noise)
-    less = alike * large + np.sqrt(1.0 - alike**2) * (random.standard_normal(600) if alike else own)
-    blocks = [Block("spring", large[:, None], 0, 1), Block("cogging", less[:, None], 0, 1)]
+    most, own, noise = orthonormal(random.standard_normal((600, 3))).T
+    base = Base(np.empty((600, 0)), 1.1 * most + (0.0 if alike else size) * own + noise)
+    less = alike * most + np.sqrt(1.0 - alike**2) * own
+    blocks = [Block("spring", most[:, None], 0, 1), Block("cogging", less[:, None], 0, 1)]
     shapes = screen([base], blocks, np.arange(600) // 20).evidence
     gathered = SimpleNamespace(
-        show_in="moving", noise=None, with_block=lambda block: SimpleNamespace(bases=[base.extended(block.columns)])
+        show_in=rows, noise=None, with_block=lambda block: SimpleNamespace(bases=[base.extended(block.columns)])
     )
     family = families._Family(None, gathered, None, shapes, [])
     assert [one.block.name for one in shapes] == ["spring", "cogging"]
-    assert shapes[1].noncentrality < families.SHARE_NEAR_REVERSALS * shapes[0].noncentrality
     assert not family._is_shadow(shapes[0])
     assert family._is_shadow(shapes[1]) == is_shadow
