@@ -12,6 +12,7 @@ from compensator.lab.model.linear import orthonormal
 from compensator.lab.model.order_search import Path, explained
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.gathering import gather
 from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
 
 ROWS, PAIRS = 90, 6
@@ -95,3 +96,12 @@ def test_where_the_gear_ratio_is_told_no_other_order_is_taken_for_the_gears():
     assert diagnose(fit).verdict == "nothing"
     grown = fit_model(fit.dataset, [*fit.names, "cogging"])
     assert grown.shapes["cogging"][0] != pytest.approx(ORDER, rel=0.01)
+
+
+def test_an_order_that_hardly_shows_is_neither_judged_nor_fitted(monkeypatch):
+    fit = fitted(lambda x: RIPPLE_N_M * np.cos(20.0 * x.q), replace(FACTS, gear_ratio=100.0))
+    assert fit_model(fit.dataset, [*fit.names, "cogging"]).shapes["cogging"] == (20.0,)
+    monkeypatch.setattr(Path, "highest", 12.0)
+    judged = [block.shape[0] for block in gather(fit).named if block.name == "cogging"]
+    assert max(judged) == 12.0
+    assert fit_model(fit.dataset, [*fit.names, "cogging"]).shapes["cogging"][0] <= 12.0
