@@ -58,10 +58,6 @@ class Guide:
     """One commissioning at a time, of the drive that the bench's configuration names.
 
     Every motion is an experiment of the bench, with STOP, limits, record and the drive's watchdog.
-
-    Args:
-        runner: of the bench.
-        store: of the bench.
     """
 
     def __init__(self, runner: BenchControl, store: Store) -> None:

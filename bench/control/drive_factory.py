@@ -57,9 +57,6 @@ def make_equipment(configuration: BenchConfiguration, ask: Ask = nobody) -> Equi
 def share_lines(drives: Iterable[tuple[BenchConfiguration, Drive]]) -> None:
     """Let drives of one bench that are on one line use it together, where their kind can. Before any is opened.
 
-    Args:
-        drives: each with the joint's bench.
-
     Raises:
         ConfigurationError: they cannot be on one line.
     """

@@ -26,11 +26,7 @@ class Violation(NamedTuple):
 
 
 class Guard:
-    """Compares samples with limits.
-
-    Args:
-        limits: what is allowed.
-    """
+    """Compares samples with limits."""
 
     def __init__(self, limits: Limits) -> None:
         self.limits = limits

@@ -59,12 +59,7 @@ class Task:
 
 
 class Calibrator:
-    """One calibration at a time.
-
-    Args:
-        runner: of the bench.
-        store: of the bench.
-    """
+    """One calibration at a time."""
 
     def __init__(self, runner: BenchControl, store: Store) -> None:
         self._runner, self._store = runner, store

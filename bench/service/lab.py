@@ -52,9 +52,6 @@ class Asker:
     def waiting(self, end: Callable[[], None]) -> Iterator[None]:
         """While it is computed.
 
-        Args:
-            end: ends it.
-
         Raises:
             LabEndedError: it has been given up already.
         """

@@ -44,9 +44,6 @@ def prepare(can_id: int, data: bytes = b"", remote: bool = False) -> can.Message
 class CanPort:
     """An open bus, and the last frame of each identifier.
 
-    Args:
-        settings: how it is reached.
-
     Attributes:
         garbled: frames that could not be read.
         state_bits: of identifiers of 29 bits: those that say a state, and by which frames are not told apart.

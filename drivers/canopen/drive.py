@@ -26,10 +26,6 @@ from drivers.refusal import check_mode, not_enabled, not_open, switched_itself_o
 class CanopenDrive:
     """One drive on a CAN bus. The caller's thread owns the bus; there is no other.
 
-    Args:
-        settings: bus and drive.
-        joint: what is on it.
-
     Attributes:
         settings: as given.
         port: the bus; another drive's where both are on one, see `share_buses`.

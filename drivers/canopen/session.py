@@ -109,10 +109,6 @@ class Session:
     def run(self, cob_id: int, payload: bytes) -> bool:
         """One cycle, with all that has to be looked after in it; tell whether it was answered in time.
 
-        Args:
-            cob_id: of the RPDO.
-            payload: of the RPDO.
-
         Raises:
             DriveConnectionError: the drive does not answer for too long, its heartbeat is gone, it has restarted, or
                 another host is on the bus.
@@ -128,11 +124,7 @@ class Session:
         return answered
 
     def idle(self, controlword: int) -> bool:
-        """One cycle that demands nothing; tell whether it was answered. Nobody is looked after.
-
-        Args:
-            controlword: of the cycle.
-        """
+        """One cycle that demands nothing; tell whether it was answered. Nobody is looked after."""
         return self.cycle.run(self.speaking.cob_id, self.nothing(controlword))
 
     def nothing(self, controlword: int) -> bytes:
@@ -150,11 +142,7 @@ class Session:
         return self.cycle.value(self.position_place) if self.cycle.number else 0
 
     def sample(self, status: Status) -> Sample:
-        """The sample of the last SYNC that was answered.
-
-        Args:
-            status: of the power stage.
-        """
+        """The sample of the last SYNC that was answered."""
         cycle = self.cycle
         return self.measurement.sample(
             cycle.values, self.poll.readings, status, cycle.sync_s, cycle.earliest_s, perf_counter(), cycle.number

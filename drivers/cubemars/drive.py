@@ -16,12 +16,7 @@ _OPENING_QUESTIONS = 6
 
 
 class CubemarsDrive(ActuatorDrive[CubemarsActuator]):
-    """One actuator with its joint. It counts as the motor, its own gear included; `rig.gear` is what is behind it.
-
-    Args:
-        settings: how to reach it.
-        joint: scales and signs.
-    """
+    """One actuator with its joint. It counts as the motor, its own gear included; `rig.gear` is what is behind it."""
 
     def __init__(self, settings: CubemarsSettings, joint: JointScale) -> None:
         answer_s = 3 * settings.answer_timeout_s + 0.1

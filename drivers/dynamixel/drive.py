@@ -17,12 +17,7 @@ _REBOOT_S = 4.0  # of `clear_fault`
 
 
 class DynamixelDrive(ActuatorDrive[DynamixelActuator]):
-    """One servo with its joint. The servo counts as the motor, its own gear included; `rig.gear` is what is behind it.
-
-    Args:
-        settings: how to reach it.
-        joint: scales and signs.
-    """
+    """One servo with its joint. It counts as the motor, its own gear included; `rig.gear` is what is behind it."""
 
     def __init__(self, settings: DynamixelSettings, joint: JointScale) -> None:
         answer_s = ServoBus.longest_call_s(settings.answer_timeout_s)

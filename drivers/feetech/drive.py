@@ -15,12 +15,7 @@ _OPENING_QUESTIONS = 10
 
 
 class FeetechDrive(ActuatorDrive[FeetechActuator]):
-    """One servo with its joint. The servo counts as the motor, its own gear included; `rig.gear` is what is behind it.
-
-    Args:
-        settings: how to reach it.
-        joint: scales and signs.
-    """
+    """One servo with its joint. It counts as the motor, its own gear included; `rig.gear` is what is behind it."""
 
     def __init__(self, settings: FeetechSettings, joint: JointScale) -> None:
         answer_s = ServoBus.longest_call_s(settings.answer_timeout_s)

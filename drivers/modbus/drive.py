@@ -15,13 +15,7 @@ _OPENING_REQUESTS = 24
 
 
 class ModbusDrive(PolledDrive[Session]):
-    """One drive with one joint.
-
-    Args:
-        settings: how to reach it.
-        register_map: what it keeps where.
-        joint: scales and signs.
-    """
+    """One drive with one joint."""
 
     def __init__(self, settings: ModbusSettings, register_map: RegisterMap, joint: JointScale) -> None:
         super().__init__(

@@ -10,12 +10,7 @@ _STATES = {"fault": Status.FAULT, "quick_stop": Status.QUICK_STOP, "enabled": St
 
 
 class Demand:
-    """Values to be written: control words, mode and demands.
-
-    Args:
-        register_map: of the drive.
-        joint: scales and signs.
-    """
+    """Values to be written: control words, mode and demands."""
 
     def __init__(self, register_map: RegisterMap, joint: JointScale) -> None:
         self._map, self._joint = register_map, joint

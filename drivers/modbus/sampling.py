@@ -22,12 +22,7 @@ _IN_COUNTS = frozenset({"position_counts", "velocity_counts_s"})
 
 
 class Sampling:
-    """Puts samples together, of what was read in this cycle and what was kept from a slower request.
-
-    Args:
-        register_map: which register holds which quantity.
-        joint: scales and signs.
-    """
+    """Puts samples together, of what was read in this cycle and what was kept from a slower request."""
 
     def __init__(self, register_map: RegisterMap, joint: JointScale) -> None:
         self._names = {part: register.name for part, register in register_map.measured.items()}

@@ -23,11 +23,6 @@ ENABLING_S = 0.5  # longest wait for the drive to say that it is on
 class Session:
     """Everything between connecting and disconnecting.
 
-    Args:
-        settings: how to reach it.
-        register_map: what it keeps where.
-        joint: scales and signs.
-
     Attributes:
         told: the state that the drive was last told to be in.
         state: what it says it is.

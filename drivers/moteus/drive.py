@@ -22,10 +22,6 @@ _BEGIN_S = 1.0
 class MoteusDrive(ActuatorDrive[Any]):  # of MoteusActuator, which is imported with the library
     """One controller with its joint, by torque. It counts turns of its output; `rig.gear` is what is behind that.
 
-    Args:
-        settings: how to reach it.
-        joint: scales and signs.
-
     Raises:
         DriveConfigurationError: the library `moteus` is not installed.
     """

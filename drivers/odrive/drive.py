@@ -21,12 +21,7 @@ _TOLD_S = 5.0  # what changes slowly
 
 
 class OdriveDrive(ActuatorDrive[OdriveActuator]):
-    """One axis with its joint, by torque; `rig.motor.torque_constant_n_m_a` makes one of a current.
-
-    Args:
-        settings: how to reach it.
-        joint: scales and signs.
-    """
+    """One axis with its joint, by torque; `rig.motor.torque_constant_n_m_a` makes one of a current."""
 
     def __init__(self, settings: OdriveSettings, joint: JointScale) -> None:
         answer_s = 2 * settings.answer_timeout_s + STATE_S

@@ -18,10 +18,6 @@ class RoboclawDrive(PolledDrive[Session]):
 
     A RoboClaw has no state of its own between a demand and the next: a duty of 0 brakes, the serial time-out
     (commands 14 and 15) stops the motor, a fault stops it too. The states of the contract are kept in the session.
-
-    Args:
-        settings: how to reach it.
-        joint: scales and signs.
     """
 
     def __init__(self, settings: RoboclawSettings, joint: JointScale) -> None:

@@ -21,10 +21,6 @@ _TRIES_TOGETHER = 3
 class Session:
     """Everything between connecting and disconnecting.
 
-    Args:
-        settings: how to reach it.
-        joint: scales and signs.
-
     Attributes:
         told: the state that the motor was told last to be in; the controller itself knows of faults alone.
         notes: what the user should know of the line.

@@ -43,11 +43,7 @@ class Hand:
 
 
 class Surroundings:
-    """What the arm of a slave meets.
-
-    Args:
-        plant: of the slave.
-    """
+    """What the arm of a slave meets."""
 
     def __init__(self, plant: Plant) -> None:
         self._plant = plant

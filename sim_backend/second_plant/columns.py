@@ -40,12 +40,7 @@ class Rows:
 
     @classmethod
     def of(cls, recordings: list[SecondRecording], scales: Scales) -> "Rows":
-        """Join the trials of a joint; motion is that of the recorded position, and the effort in the same band.
-
-        Args:
-            recordings: of it.
-            scales: of it.
-        """
+        """Join the trials of a joint; motion is that of the recorded position, and the effort in the same band."""
         parts = [_of_one(one, number) for number, one in enumerate(recordings)]
         angle, rate, acceleration, passed, load_kg, warm_c, session_s, way, effort, effort_rate, number = (
             np.concatenate(values) for values in zip(*parts, strict=True)

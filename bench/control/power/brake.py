@@ -23,10 +23,6 @@ TRUST_S = 0.2  # without torque under the set brake, before the power goes
 class Brake:
     """The brake of one joint.
 
-    Args:
-        bench: the joint's, with `drive.brake`.
-        drive: of the joint.
-
     Attributes:
         settings: of the brake.
         is_released: whether it was told to be.

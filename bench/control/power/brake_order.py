@@ -12,11 +12,7 @@ where it ends meanwhile."""
 
 
 class BrakeOrder:
-    """Releases the brakes of joints that have just been powered, and sets them at the end.
-
-    Args:
-        joints: of the loop.
-    """
+    """Releases the brakes of joints that have just been powered, and sets them at the end."""
 
     def __init__(self, joints: Sequence[ControlledJoint]) -> None:
         self.joints = [joint for joint in joints if joint.brake is not None]

@@ -13,12 +13,7 @@ BELOW = 0.02  # of the largest value: an offset of a sensor, and no sign
 
 
 def magnitude_questions(files: list[Columns], assigned: Assigned) -> list[str]:
-    """Efforts that are never below 0, while the drive pushes both ways; each question names its option.
-
-    Args:
-        files: their columns.
-        assigned: which column is which quantity.
-    """
+    """Efforts that are never below 0, while the drive pushes both ways; each question names its option."""
     found = []
     for quantity in ("current", "torque", "force"):
         name = assigned.columns.get(quantity, ("",))[0]

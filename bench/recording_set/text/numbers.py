@@ -12,12 +12,7 @@ NOTHING = ("", "na", "n/a", "#n/a", "null", "none", "-", "--", "---")  # a value
 
 
 class NoNumber(ValueError):
-    """A cell that is no number.
-
-    Args:
-        index: which of the cells.
-        text: what it holds.
-    """
+    """A cell that is no number."""
 
     def __init__(self, index: int, text: str) -> None:
         super().__init__(text)

@@ -18,12 +18,7 @@ _DAY_S = 86400.0
 
 
 class NoStamp(ValueError):
-    """A cell that is no date or time.
-
-    Args:
-        index: which of the cells.
-        text: what it holds.
-    """
+    """A cell that is no date or time."""
 
     def __init__(self, index: int, text: str) -> None:
         super().__init__(text)

@@ -16,10 +16,6 @@ class Publisher:
     """All that is sent to the service: messages go out whole, and what was seen later goes out later.
 
     Where the service does not read, this waits, and nothing else does.
-
-    Args:
-        runner: what is looked at.
-        connection: to the service.
     """
 
     def __init__(self, runner: Runner, connection: "Connection") -> None:

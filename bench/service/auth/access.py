@@ -134,11 +134,7 @@ async def _identified(request: Request, credentials: HTTPAuthorizationCredential
 
 
 class Require:
-    """Dependency of a route: a token of this role, or a higher one.
-
-    Args:
-        role: what is needed.
-    """
+    """Dependency of a route: a token of this role, or a higher one."""
 
     def __init__(self, role: Role) -> None:
         self._role = role

@@ -101,11 +101,7 @@ COLUMNS = tuple(ITEM[name] for name in LabItem.__dataclass_fields__ if name not 
 
 
 class LabQueueTable:
-    """The queue of the laboratory. Every method may be called from any thread, of any bench.
-
-    Args:
-        database: of the laboratory.
-    """
+    """The queue of the laboratory. Every method may be called from any thread, of any bench."""
 
     def __init__(self, database: Database) -> None:
         self._database = database

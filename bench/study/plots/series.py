@@ -38,11 +38,6 @@ def series_of(material: Material, fit: Fit) -> list[Series]:
 def drivers_over_time(store: Store, study_id: int, trial_id: int) -> DriversOverTime:
     """What drives the residual of a trial, over time.
 
-    Args:
-        store: with the study.
-        study_id: which study.
-        trial_id: which of its trials.
-
     Raises:
         StudyError: the study has no such trial, or its trials cannot be used.
     """

@@ -12,11 +12,7 @@ FEWEST_REVERSAL_ROWS = 40
 
 
 def few_rows(fit: Fit) -> dict[str, str]:
-    """Effect name -> which rows it has too few of, and what to record; of all effects that a model does not have.
-
-    Args:
-        fit: of the model.
-    """
+    """Effect name -> which rows it has too few of, and what to record; of all effects that a model does not have."""
     return {**(few_reversals(fit) or {}), **(few_starts(fit, breakaway_rows(fit)) or {})}
 
 
@@ -33,12 +29,7 @@ def few_reversals(fit: Fit) -> dict[str, str] | None:
 
 
 def few_starts(fit: Fit, rows: BreakawayRows | None) -> dict[str, str] | None:
-    """The same of effects that show at starts from rest alone; None where there are rows enough.
-
-    Args:
-        fit: of the model.
-        rows: its starts from rest.
-    """
+    """The same of effects that show at starts from rest alone; None where there are rows enough."""
     count = starts_counted(rows)
     if rows is not None and count >= FEWEST_STARTS:
         return None

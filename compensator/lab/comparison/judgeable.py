@@ -66,11 +66,7 @@ class _Shown:
 
 
 def judgeable(fit: Fit) -> list[Judgeable]:
-    """How the trials of a model stand to every effect that it does not have.
-
-    Args:
-        fit: of the model.
-    """
+    """How the trials of a model stand to every effect that it does not have."""
     shown: list[_Shown] = []
     found: dict[str, Judgeable] = {}
     base = _orthonormal(fit.columns[fit.training])

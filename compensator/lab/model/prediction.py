@@ -24,12 +24,7 @@ SAME_SHARE = 1e-3  # of the fastest speed: corrections whose rates differ by les
 
 
 def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
-    """The rows, with the model's own predicted load and effort in every motion.
-
-    Args:
-        dataset: of the rows.
-        terms: of the fitted model.
-    """
+    """The rows, with the model's own predicted load and effort in every motion."""
     dataset = at_true_position(dataset, terms)
     acceleration = np.concatenate([trial.motion.acceleration for trial in dataset.trials])
     total, carried = np.zeros((2, len(acceleration)))

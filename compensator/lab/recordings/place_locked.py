@@ -35,13 +35,7 @@ class Pass:
 
 
 def place_locked_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts) -> float:
-    """The highest frequency at which the effort repeats with the place of the joint [Hz]; 0 where it does not.
-
-    Args:
-        recordings: of the joint.
-        effort: which quantity.
-        facts: of the joint.
-    """
+    """The highest frequency at which the effort repeats with the place of the joint [Hz]; 0 where it does not."""
     name = f"position_{facts.position_unit}"
     there = [one for one in recordings if name in one.channels and np.isfinite(one.channels[name]).any()]
     if not there:

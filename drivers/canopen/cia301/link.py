@@ -28,10 +28,6 @@ _BUS_OFF = 0x40  # error class of a SocketCAN error frame (linux/can/error.h)
 class CanLink(canopen.Network):
     """One drive's access to a CAN bus, open or not. Whichever link receives hands out to all of the bus.
 
-    Args:
-        port: the bus.
-        device: named in errors.
-
     Attributes:
         garbled: frames that could not be read, or were not what their COB-ID promises.
         waited: sends that found the transmit buffer full and were repeated.

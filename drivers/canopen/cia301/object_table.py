@@ -40,10 +40,6 @@ class ObjectTable:
 
     Any refusal of a wished object counts as its absence, whatever the abort code: drives answer alike questions
     differently.
-
-    Args:
-        access: to the drive.
-        device: named in errors.
     """
 
     def __init__(self, access: ObjectAccess, device: str) -> None:

@@ -23,9 +23,6 @@ class Write(NamedTuple):
 class PdoLayout:
     """Objects one after the other in up to 8 bytes, little-endian.
 
-    Args:
-        entries: in their order.
-
     Raises:
         ValueError: they do not fit.
     """

@@ -83,12 +83,7 @@ class SyncCycle:
         link.cycle = self
 
     def run(self, cob_id: int, payload: bytes) -> bool:
-        """Send a command and SYNC, and wait for the answer; tell whether it came.
-
-        Args:
-            cob_id: of the RPDO.
-            payload: of the RPDO.
-        """
+        """Send a command and SYNC, and wait for the answer; tell whether it came."""
         link = self._link
         if self._is_new and perf_counter() - self._sent_s < self._usable_s:
             self._is_new = False

@@ -48,10 +48,6 @@ _TARGETS = {
 class Node:
     """A CANopen slave.
 
-    Args:
-        dictionary: its objects.
-        conduct: its manners.
-
     Attributes:
         send: takes the frames that go out; set by whoever has the bus.
         on_reset: called after an application reset.

@@ -24,11 +24,7 @@ class _Transfer:
 
 
 class SdoServer:
-    """Answers the requests of one client.
-
-    Args:
-        dictionary: what is read and written.
-    """
+    """Answers the requests of one client."""
 
     def __init__(self, dictionary: Dictionary) -> None:
         self._dictionary = dictionary

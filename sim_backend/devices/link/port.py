@@ -13,11 +13,6 @@ LOOK_UP_S = 0.02  # how soon a port notices that it shall close or disconnect
 class PortThread(threading.Thread, ABC):
     """Serves until `close`.
 
-    Args:
-        line: pace and faults.
-        clock: of the device.
-        name: of the thread.
-
     Attributes:
         error: what ended the thread before its time.
     """

@@ -9,11 +9,7 @@ from sim_backend.devices.moteus.controller import MoteusController
 
 
 class MoteusOnBus:
-    """The controllers of a bus. Loads, faults and truth are the first one's.
-
-    Args:
-        controllers: on the bus.
-    """
+    """The controllers of a bus. Loads, faults and truth are the first one's."""
 
     def __init__(self, controllers: Sequence[MoteusController]) -> None:
         self.axis = controllers[0].axis

@@ -10,11 +10,7 @@ _DAMPING = 0.6
 
 
 class PositionHold:
-    """PD on the joint's position, as motor current: the unloaded joint is a second-order system of 40 rad/s.
-
-    Args:
-        parameters: the joint.
-    """
+    """PD on the joint's position, as motor current: the unloaded joint is a second-order system of 40 rad/s."""
 
     def __init__(self, parameters: PlantParameters) -> None:
         motor, ratio = parameters.motor, parameters.gear.ratio

@@ -14,11 +14,6 @@ class ProfilePosition:
 
     A rising new-set-point bit hands over a target; the drive acknowledges in statusword bit 12 until the bit falls.
     With change-at-once the target counts now, else after the move under way; one target can wait.
-
-    Args:
-        dictionary: the drive's.
-        loop: its position controller.
-        units: of the drive.
     """
 
     def __init__(self, dictionary: Dictionary, loop: PositionLoop, units: Units) -> None:
