@@ -3,8 +3,7 @@
 from functools import cache
 from pathlib import Path
 
-from sqlalchemy import Connection, create_engine, inspect, text
-from sqlalchemy.pool import StaticPool
+from sqlalchemy import Connection, inspect, text
 
 from bench import __version__
 from bench.store.database import Database
@@ -47,18 +46,6 @@ def _revision(connection: Connection) -> str | None:
 def _of_a_new_file() -> tuple[str, ...]:
     """What the migrations make of an empty SQLite file: kept, as to run them takes a quarter of a second."""
     return tuple(NEW_FILE.read_text(encoding="utf-8").rstrip("\n").split("\n\n"))
-
-
-def made_by_migrations() -> tuple[str, ...]:
-    """The statements that belong into `NEW_FILE`."""
-    engine = create_engine("sqlite://", poolclass=StaticPool)
-    with engine.begin() as connection:
-        _upgrade(connection, "memory", None)
-        # tables first: some were made anew after an index of another one
-        query = "SELECT sql FROM sqlite_master WHERE sql IS NOT NULL ORDER BY type <> 'table', rowid"
-        made = tuple(connection.exec_driver_sql(query).scalars())
-    engine.dispose()
-    return made
 
 
 def _upgrade(connection: Connection, where: str, found: str | None, target: str = "head") -> None:

@@ -44,7 +44,7 @@ def make(settings: DynamixelDriveSettings, rig: Rig) -> Drive:
 
 def follow(settings: DynamixelDriveSettings, rig: Rig, link: Path, period_s: float) -> Follower:
     """Stand between another program and the servo."""
-    from drivers.dynamixel.follow import follow as followed
+    from drivers.dynamixel.drive import follow as followed
     from drivers.dynamixel.settings import DynamixelSettings
 
     return followed(DynamixelSettings(**driver_values(settings)), joint_scale(settings, rig), link, period_s)

@@ -43,7 +43,7 @@ def make(settings: FeetechDriveSettings, rig: Rig) -> Drive:
 
 def follow(settings: FeetechDriveSettings, rig: Rig, link: Path, period_s: float) -> Follower:
     """Stand between another program and the servo."""
-    from drivers.feetech.follow import follow as followed
+    from drivers.feetech.drive import follow as followed
     from drivers.feetech.settings import FeetechSettings
 
     return followed(FeetechSettings(**driver_values(settings)), joint_scale(settings, rig), link, period_s)
