@@ -2,11 +2,10 @@
 
 from typing import Literal
 
-from bench.config.drives.real import RealDriveSettings
+from bench.config.drives.real import Bitrate, RealDriveSettings
 from bench.config.quantities import quantity
 from bench.config.rig import Section
 
-Bitrate = Literal[10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 1_000_000]
 VelocityUnit = Literal["rpm", "0.1 rpm", "0.01 rpm", "0.001 rpm", "counts/s", "rad/s", "deg/s"]
 
 
