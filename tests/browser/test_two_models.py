@@ -97,9 +97,19 @@ def test_units_of_one_kind_stand_beside_each_other(service, open_page, studies):
     page = open_page("#study", width=1440)
     page.get_by_text("Units of one kind").click()
     units = page.locator("details", has_text="Units of one kind")
-    for number in (*studies, third):
-        units.get_by_label(f"{number}: ").check()
-    page.get_by_role("button", name="Compare units").click()
+    compare = page.get_by_role("button", name="Compare units")
+    units.get_by_label(f"{studies[0]}: ").check()
+    compare.click()
+    page.get_by_text("Choose at least 2.").wait_for()
+    units.get_by_label(f"{third}: ").check()
+    compare.click()
+    page.get_by_text("each of the", exact=False).wait_for()  # intervals of the differences holds by itself
+    told = service.client.get(f"/studies/{studies[0]}/units?beside={third}").json()
+    two = page.locator("[aria-label='What differs between the two units'] tbody tr")
+    assert two.count() == len(told["differences"])
+    assert page.locator("[aria-label='What units have in common']").count() == 0
+    units.get_by_label(f"{studies[1]}: ").check()
+    compare.click()
     page.get_by_text("None of the 3 units is shown to be an outlier.").wait_for()
     rows = page.locator("[aria-label='Each unit beside the others'] tr", has_text="unit 3")
     assert rows.count() == page.locator("[aria-label='What units have in common'] tbody tr").count()

@@ -1,4 +1,5 @@
-// Units of one kind: a study for each, all fitted with the first one's model; what they share, and which is an outlier.
+// Units of one kind: a study for each, all fitted with the first one's model; what they share,
+// and which is an outlier; of two, what differs.
 
 import { get } from "../app/api.js";
 import { patiently } from "../ui/attempt.js";
@@ -6,7 +7,7 @@ import { h, replace, table } from "../ui/dom.js";
 import { chanceCell, interval, number, percent, spoken } from "../ui/format.js";
 import { unitText, writerOf } from "./parameters.js";
 
-const FEWEST = 3;
+const FEWEST = 2;
 
 export function unitsForm(studies) {
   const boxes = studies.map(({ study_id: value }) => h("input", { type: "checkbox", value: String(value) }));
@@ -27,10 +28,32 @@ export function unitsForm(studies) {
     h("div", { class: "choices" }, labels), h("div", { class: "row" }, button), answer);
 }
 
-function unitTables({ parameters, sentence, notes, units }) {
+function unitTables({ differences, parameters, sentence, notes, units }) {
+  const odd = parameters.some((one) => one.values.some((value) => value.outlier));
+  const judged = odd ? "problem" : "good";
+  return [h("div", { class: differences.length ? "soft" : judged, role: "status" }, spoken(sentence)),
+    differences.length ? tableOfTwo(differences, units) : tablesOfMany(parameters),
+    table("Units", [
+      { title: "Study", cell: (unit) => unit.name },
+      { title: "Trials", number: true, cell: (unit) => unit.trials },
+      { title: "Error", number: true, cell: (unit) => percent(unit.error) },
+    ], units),
+    notes.map((note) => h("p", { class: "soft" }, spoken(note)))];
+}
+
+function tableOfTwo(differences, [first, second]) {
+  return table("What differs between the two units", [
+    { title: "Parameter", cell: (one) => spoken(one.name) },
+    { title: `${first.study_id}: ${first.name}`, number: true, cell: (one) => number(one.first, 3) },
+    { title: `${second.study_id}: ${second.name}`, number: true, cell: (one) => number(one.second, 3) },
+    { title: "Difference (90 %)", number: true, cell: (one) => within(one.difference, one.low, one.high) },
+    { title: "Unit", cell: (one) => unitText(one.unit) },
+  ], differences);
+}
+
+function tablesOfMany(parameters) {
   const rows = parameters.flatMap((one) => one.values.map((value) => ({ one, value, chosen: value.outlier })));
-  const odd = rows.some(({ chosen }) => chosen);
-  return [h("div", { class: odd ? "problem" : "good", role: "status" }, spoken(sentence)),
+  return [
     table("What units have in common", [
       { title: "Parameter", cell: (one) => spoken(one.name) },
       { title: "Mean (95 %)", number: true, cell: (one) => within(one.mean, one.mean_low, one.mean_high) },
@@ -48,13 +71,7 @@ function unitTables({ parameters, sentence, notes, units }) {
       { title: "Off by (95 %)", number: true, cell: ({ value }) => within(value.deviation, value.deviation_low, value.deviation_high) },
       { title: "p", number: true, cell: ({ value }) => chanceCell(value.p_value) },
       { title: "", unseen: "Outlier", cell: ({ value }) => (value.outlier ? "outlier" : "") },
-    ], rows),
-    table("Units", [
-      { title: "Study", cell: (unit) => unit.name },
-      { title: "Trials", number: true, cell: (unit) => unit.trials },
-      { title: "Error", number: true, cell: (unit) => percent(unit.error) },
-    ], units),
-    notes.map((note) => h("p", { class: "soft" }, spoken(note)))];
+    ], rows)];
 }
 
 function within(value, low, high) {
