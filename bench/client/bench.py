@@ -15,6 +15,7 @@ from bench.client.live import LiveRows, live_rows
 from bench.client.run import Run
 from bench.client.study import Study
 from bench.client.trial import Trial
+from bench.own_service import local_port, own_file, read_token
 
 
 class Bench:
@@ -22,9 +23,13 @@ class Bench:
 
     Args:
         url: of the service.
-        token: what `friction-bench serve` printed, or `friction-bench token new`; None: FRICTION_BENCH_TOKEN.
+        token: of `friction-bench token new`; None: FRICTION_BENCH_TOKEN, else what this user's service on this machine
+            has left for the user's programs while it runs.
         timeout_s: for an answer [s].
         ca_file: certificate, in PEM, that vouches for a service that speaks https; None: those of the system.
+
+    Raises:
+        ConfigurationError: others can read the file of the token that the service has left.
     """
 
     def __init__(
@@ -34,7 +39,8 @@ class Bench:
         timeout_s: float = 120.0,
         ca_file: str | None = None,
     ) -> None:
-        self._connection = Connection(url, token or os.environ.get("FRICTION_BENCH_TOKEN"), timeout_s, ca_file)
+        token = token or os.environ.get("FRICTION_BENCH_TOKEN") or _left_token(url)
+        self._connection = Connection(url, token, timeout_s, ca_file)
 
     def status(self) -> Answer:
         """Drive, limits, rig, and what it is doing."""
@@ -158,3 +164,13 @@ class Bench:
 
     def __repr__(self) -> str:
         return f"<Bench {self._connection.url}>"
+
+
+def _left_token(url: str) -> str | None:
+    """The token of this user's service on this machine; None where it left none, or the address is none of it."""
+    try:
+        port = local_port(url)
+    except ValueError:  # no address at all: the connection says so
+        return None
+    file = None if port is None else own_file(port)
+    return None if file is None else read_token(file)

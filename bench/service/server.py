@@ -15,11 +15,12 @@ from bench import __version__
 from bench.commission.guide import ENDED
 from bench.config.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
+from bench.own_service import LOOPBACK_NAMES, is_loopback, own_file
 from bench.runs import event_log
 from bench.runs.bench_control import BenchControl
 from bench.runs.bench_process.remote_runner import RemoteRunner
-from bench.service.auth.access import LOOPBACK_NAMES, Access, check_bind, is_loopback
-from bench.service.auth.session import own_file, session_file, session_token
+from bench.service.auth.access import Access, check_bind
+from bench.service.auth.session import session_file, session_token
 from bench.service.auth.tls import Certificate
 from bench.service.auth.token_register import TokenRegister, first_token, has_valid_token
 from bench.service.auth.tokens import SAME_USER, chosen_token, token_file

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from bench.config.configuration import BenchConfiguration
 from bench.control.drive_factory import is_simulated
-from bench.service.auth.access import is_loopback
+from bench.own_service import is_loopback
 from bench.service.auth.token_register import Tokens
 from bench.service.auth.tokens import ENVIRONMENT, TOKEN_VARIABLE, token_file
 from bench.service.http.api_router import PREFIX

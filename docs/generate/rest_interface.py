@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from bench.config.configuration import default_configuration
+from bench.own_service import LOOPBACK_NAMES
 from bench.runs.runner import Runner
 from bench.service.app import create_app
-from bench.service.auth.access import LOOPBACK_NAMES, Access
+from bench.service.auth.access import Access
 from bench.service.auth.token_register import TokenRegister
 from bench.store import Store
 from docs.generate.markdown import anchor, code, folded, table

@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 
 from bench.client import Bench, Refused, Unreachable, connection
+from bench.client.bench import _left_token
 from bench.config.channels import CHANNELS
 from bench.control import station
 from bench.control.drive_factory import Equipment
 from bench.control.technician import PersonTechnician
+from bench.errors import ConfigurationError
+from bench.own_service import own_file
 from tests.control.fake_drive import FakeDrive
 from tests.service.recorded_joint import study_path
 from tests.service.running_service import TOKEN
@@ -47,6 +50,26 @@ def test_a_channel_that_no_recording_set_holds_is_read_too(bench, service, monke
     assert list(trial.channels("duty")) == ["duty"]
     shared = service.client.get(f"/trials/{trial.trial_id}/csv").text.splitlines()[0].split(",")
     assert "duty" not in shared
+
+
+def test_the_token_that_the_service_left_for_its_user_is_taken(service, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    monkeypatch.delenv("FRICTION_BENCH_TOKEN", raising=False)
+    with Bench(service.url) as nobody, pytest.raises(Refused) as refused:
+        nobody.stop()
+    assert refused.value.status == 401
+    port = service.url.rsplit(":", 1)[1]
+    left = own_file(int(port))
+    left.parent.mkdir()
+    left.write_text(f"{TOKEN}\n")
+    left.chmod(0o600)
+    with Bench(service.url) as found:
+        found.stop()
+    assert _left_token(f"http://bench.lab:{port}") is None, "another machine is not sent it"
+    assert _left_token("http://127.0.0.1:port") is None
+    left.chmod(0o644)
+    with pytest.raises(ConfigurationError, match="chmod 600"):
+        Bench(service.url)
 
 
 def test_lists_are_read_to_their_end(bench, service, monkeypatch):

@@ -63,7 +63,7 @@ def _numbers_in(answer: bytes) -> dict[str, str]:
 
 def test_the_python_example(bench, service, study, capsys):
     [code] = re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL)
-    code = code.replace(ADDRESS, service.url).replace('"..."', repr(TOKEN))
+    code = code.replace("Bench()", f"Bench({service.url!r}, {TOKEN!r})")
     names: dict[str, object] = {}
     exec(code, names)
     channels = names["channels"]

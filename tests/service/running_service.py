@@ -12,11 +12,12 @@ from typing import Any
 import httpx
 
 from bench.config.configuration import BenchConfiguration, default_configuration
+from bench.own_service import LOOPBACK_NAMES
 from bench.runs.bench_control import BenchControl
 from bench.runs.bench_process.remote_runner import RemoteRunner
 from bench.runs.runner import Runner
 from bench.service.app import create_app
-from bench.service.auth.access import LOOPBACK_NAMES, Access
+from bench.service.auth.access import Access
 from bench.service.auth.tls import Certificate
 from bench.service.auth.token_register import TokenRegister
 from bench.service.auth.tokens import ENVIRONMENT, digest_of, make_token

@@ -10,9 +10,10 @@ import httpx
 import pytest
 
 from bench.errors import ConfigurationError
+from bench.own_service import own_file, read_token
 from bench.service.auth import token_register
 from bench.service.auth.attempts import BURST, MOST_ADDRESSES, REFILL_S, Attempts
-from bench.service.auth.session import found_token, own_file, session_file, session_token
+from bench.service.auth.session import found_token, session_file, session_token
 from bench.service.auth.token_register import TokenRegister, first_token, has_valid_token
 from bench.service.auth.tokens import (
     Role,
@@ -20,7 +21,6 @@ from bench.service.auth.tokens import (
     chosen_token,
     digest_of,
     make_token,
-    read_token,
     token_file,
 )
 from bench.store import Store

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any
-from urllib.parse import urlsplit
 
 import typer
 
@@ -61,7 +60,7 @@ def ask(session: BenchSession, method: str, url: str, path: str, body: Mapping[s
 
 def token_for(session: BenchSession, url: str) -> str | None:
     """The token for a service: one that was chosen, else that of the same user's service on this machine."""
-    from bench.service.auth.access import is_loopback
+    from bench.own_service import local_port
     from bench.service.auth.session import found_token
     from bench.service.auth.tokens import chosen_token, token_file
 
@@ -69,12 +68,10 @@ def token_for(session: BenchSession, url: str) -> str | None:
     if chosen is not None:
         return chosen[1]
     try:
-        parts = urlsplit(url)
-        host, port = parts.hostname or "", parts.port or (443 if parts.scheme == "https" else 80)
+        port = local_port(url)
     except ValueError as error:
         raise ServiceError(f"'{url}' is no address of a service ({error}); wanted is {DEFAULT_URL}") from error
-    # only this machine may be sent it: what answers elsewhere is not the service that made the file
-    return found_token(session.store_url(), port) if is_loopback(host) else None
+    return None if port is None else found_token(session.store_url(), port)
 
 
 def _detail(answer: "httpx.Response") -> str:

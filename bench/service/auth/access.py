@@ -1,6 +1,5 @@
 """Who may do what: whose token it is, what its role allows; and where nobody may listen without tokens."""
 
-import ipaddress
 import math
 from dataclasses import dataclass, field
 from typing import Annotated, cast
@@ -11,12 +10,12 @@ from fastapi import Depends, HTTPException, Request
 from fastapi.security import HTTPAuthorizationCredentials, HTTPBearer
 
 from bench.errors import ConfigurationError
+from bench.own_service import LOOPBACK_NAMES, is_loopback
 from bench.service.auth.attempts import Attempts
 from bench.service.auth.token_register import TokenRegister
 from bench.service.auth.tokens import Caller, Role
 from bench.store.errors import StoreError
 
-LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 LOOK_AGAIN_S = 1.0  # what the database is given to tell of a token that was made just now
 
 _bearer = HTTPBearer(
@@ -83,16 +82,6 @@ class Access:
             self.tokens.refresh()
         except StoreError:
             return
-
-
-def is_loopback(host: str) -> bool:
-    """True where only this machine can reach the address."""
-    if host in LOOPBACK_NAMES:
-        return True
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
 
 
 def check_bind(host: str, token_configured: bool, private: bool = True) -> None:

@@ -10,23 +10,14 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from bench.errors import ConfigurationError
-from bench.service.auth.tokens import make_token, read_token, token_file
+from bench.own_service import own_file, read_token
+from bench.service.auth.tokens import make_token, token_file
 
 
 def session_file(store_url: str, port: int) -> Path:
     """Beside the store: the file of the service on `port`."""
     beside = token_file(store_url)
     return beside.with_name(f"{beside.stem}.port-{port}.token")
-
-
-def own_file(port: int) -> Path | None:
-    """In the user's own folder: the file of the service on `port`; None where the user has no home."""
-    state = os.environ.get("XDG_STATE_HOME", "")
-    try:
-        folder = Path(state) if Path(state).is_absolute() else Path.home() / ".local" / "state"
-    except RuntimeError:
-        return None
-    return folder / "friction-bench" / f"port-{port}.token"
 
 
 @contextmanager

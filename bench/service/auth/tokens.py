@@ -9,13 +9,13 @@ import hashlib
 import os
 import re
 import secrets
-import stat
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import total_ordering
 from pathlib import Path
 
 from bench.errors import ConfigurationError
+from bench.own_service import checked_token, read_token
 
 
 @total_ordering
@@ -53,7 +53,6 @@ TOKEN_VARIABLE = "FRICTION_BENCH_TOKEN"  # noqa: S105  the name of a variable, n
 ENVIRONMENT, TOKEN_FILE, SAME_USER = "environment", "token-file", "this-user"
 RESERVED_NAMES = frozenset({ENVIRONMENT, TOKEN_FILE, SAME_USER, "command-line"})
 NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9 ._@-]{0,63}")
-_PERMITTED = re.compile(r"[A-Za-z0-9._~+/=-]{16,256}")
 
 
 def make_token() -> str:
@@ -99,32 +98,6 @@ def chosen_token(path: Path) -> tuple[str, str] | None:
     """
     value = os.environ.get(TOKEN_VARIABLE)
     if value is not None:
-        return ENVIRONMENT, _checked(value.strip(), f"environment variable {TOKEN_VARIABLE}")
+        return ENVIRONMENT, checked_token(value.strip(), f"environment variable {TOKEN_VARIABLE}")
     found = read_token(path)
     return None if found is None else (TOKEN_FILE, found)
-
-
-def read_token(path: Path) -> str | None:
-    """The token in a file; None where there is no file.
-
-    Raises:
-        ConfigurationError: as `chosen_token`.
-    """
-    if not path.exists():
-        return None
-    mode = stat.S_IMODE(path.stat().st_mode)
-    if os.name == "posix" and mode & 0o077:
-        raise ConfigurationError(
-            f"{path}: mode is {mode:04o}; allowed is 0600, because others could read the token. "
-            f"Delete the file to get a new token, or run: chmod 600 {path}"
-        )
-    return _checked(path.read_text(encoding="utf-8").strip(), str(path))
-
-
-def _checked(token: str, where: str) -> str:
-    if not _PERMITTED.fullmatch(token):
-        raise ConfigurationError(
-            f"{where}: the token has {len(token)} characters; wanted are 16 to 256 letters, digits or ._~+/=- "
-            "(make one with: python -c 'import secrets; print(secrets.token_urlsafe(32))')"
-        )
-    return token
