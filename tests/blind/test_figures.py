@@ -1,5 +1,5 @@
 import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 from math import isnan
 
 import numpy as np
@@ -262,7 +262,11 @@ def test_suggested_trials_are_held_against_random_ones() -> None:
     assert (gain.items, gain.measured) == (2, pytest.approx(2.0))  # of 4 and 1
     assert gain.reached
     old = {"rivals": [], "before": 1.0, "predicted": 2.0, "trials": 6, "named": []}
-    assert Settled.from_json(old).by_chance == 0.0
+    again = Result.from_json(one.to_json() | {"settled": old})
+    assert again.settled is not None
+    assert again.settled.by_chance == 0.0
+    with pytest.raises(ValueError, match="colour"):
+        Result.from_json(one.to_json() | {"colour": "blue"})
 
 
 def test_a_promise_is_asked_to_be_kept() -> None:
@@ -272,7 +276,7 @@ def test_a_promise_is_asked_to_be_kept() -> None:
     results = [replace(one, settled=settled) for settled in (kept, broken, broken)]
     assert _figure(results, "predicted d' >= 6").measured == pytest.approx(1 / 3)
     assert (_figure(results, "the lab promises").items, _figure(results, "the lab promises").measured) == (1, 1.0)
-    assert Settled.from_json(asdict(kept)) == kept
+    assert Result.from_json(results[0].to_json()) == results[0]
 
 
 def test_what_was_predicted_of_suggested_trials_is_held_against_what_came() -> None:

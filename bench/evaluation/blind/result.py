@@ -1,9 +1,12 @@
 """What came of an item: answer of the lab, standing of the truth, and the trials that settle it."""
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+
+from pydantic import ConfigDict, TypeAdapter
 
 Classes = tuple[tuple[str, ...], ...]
+_NOTHING_ELSE = ConfigDict(extra="forbid")  # of a file: what another version has written is refused
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +20,7 @@ class Standing:
         smallest: the r that theory needs to find any one of so many effects nine times in ten.
     """
 
+    __pydantic_config__ = _NOTHING_ELSE
     ratio: float
     detectability: float
     rival: str
@@ -37,6 +41,7 @@ class LabAnswer:
         ranked: the first three effects of the first diagnosis, named or not; None in older results, which do not tell.
     """
 
+    __pydantic_config__ = _NOTHING_ELSE
     verdict: str
     first: tuple[str, ...]
     named: Classes
@@ -45,13 +50,6 @@ class LabAnswer:
     detectability: float
     error: float
     ranked: tuple[str, ...] | None = None
-
-    @classmethod
-    def from_json(cls, values: dict[str, Any]) -> "LabAnswer":
-        """From a dict of lists."""
-        named = tuple(tuple(names) for names in values["named"])
-        lists = {name: tuple(values[name]) for name in ("first", "ranked") if values.get(name) is not None}
-        return cls(**{**values, **lists, "named": named})
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +68,7 @@ class Settled:
         promised: as `predicted`, of the d' that nine in ten of the sizes reach that the trials measured allow.
     """
 
+    __pydantic_config__ = _NOTHING_ELSE
     rivals: tuple[str, ...]
     before: float
     predicted: float
@@ -79,13 +78,6 @@ class Settled:
     failed: int = 0
     stated: tuple[tuple[float, float], ...] = ()
     promised: float = 0.0
-
-    @classmethod
-    def from_json(cls, values: dict[str, Any]) -> "Settled":
-        """From nested lists."""
-        lists = {name: tuple(values[name]) for name in ("rivals", "named")}
-        stated = tuple((predicted, came) for predicted, came in values.get("stated", ()))
-        return cls(**{**values, **lists, "stated": stated})
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +100,7 @@ class Result:
         laws: r of friction laws that the base model does not have, whatever else is hidden.
     """
 
+    __pydantic_config__ = _NOTHING_ELSE
     key: str
     family: str
     truths: tuple[str, ...]
@@ -130,16 +123,9 @@ class Result:
         return asdict(self)
 
     @classmethod
-    def from_json(cls, values: dict[str, Any]) -> "Result":
+    def from_json(cls, values: Mapping[str, object]) -> "Result":
         """From nested dicts."""
-        made: dict[str, Any] = {
-            key: tuple(value) if isinstance(value, list) else value for key, value in values.items()
-        }
-        for which in ("answer", "withheld"):
-            made[which] = None if values.get(which) is None else LabAnswer.from_json(values[which])
-        made["standings"] = tuple(None if one is None else Standing(**one) for one in values["standings"])
-        left = values.get("withheld_left")
-        made["withheld_left"] = None if left is None else Standing(**left)
-        made["settled"] = None if values.get("settled") is None else Settled.from_json(values["settled"])
-        made["rivals"] = {name: tuple(found) for name, found in values["rivals"].items()}
-        return cls(**made)
+        return _RESULT.validate_python(values)
+
+
+_RESULT = TypeAdapter(Result)
