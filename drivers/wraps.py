@@ -36,9 +36,6 @@ class Turns:
 
     Right as long as speed times time is known to less than half a turn: from one cycle to the next, and through a
     pause in which the shaft stands or turns steadily. Whoever turns it by hand by more, in a pause, moves the zero.
-
-    Args:
-        counts_per_turn: of the count.
     """
 
     def __init__(self, counts_per_turn: int) -> None:

@@ -71,10 +71,6 @@ def tip_force(
 def require_complete(found: TipForce, pose: str) -> TipForce:
     """The estimate, where it tells the force in every direction.
 
-    Args:
-        found: of `tip_force`.
-        pose: named in the message.
-
     Raises:
         SingularPoseError: it does not.
     """

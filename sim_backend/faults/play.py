@@ -17,12 +17,7 @@ from sim_backend.plant.plant import Plant
 
 
 class FaultPlay:
-    """What a script does to plant and samples; what it does to the power stage is the drive's own affair.
-
-    Args:
-        script: the faults.
-        plant: where clutches slip and loads fall.
-    """
+    """What a script does to plant and samples; what it does to the power stage is the drive's own affair."""
 
     def __init__(self, script: FaultScript, plant: Plant) -> None:
         self._script = script

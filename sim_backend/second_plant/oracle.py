@@ -59,12 +59,7 @@ class Evidence:
 
 
 def floor_of(joint: DrawnJoint, name: str) -> Floor:
-    """Record a joint without one of its mechanisms, as it is.
-
-    Args:
-        joint: drawn.
-        name: of the mechanism.
-    """
+    """Record a joint without one of its mechanisms, as it is."""
     rows = Rows.of(record(joint, without=frozenset({name})), joint.scales)
     left = np.ones(STRATA)
     for _ in range(2):  # least squares, then weighted by what each stratum leaves

@@ -47,13 +47,7 @@ class Plan(NamedTuple):
 
 
 def run(p: Physics, control: Control, plan: Plan) -> Traces:
-    """Simulate one trial from rest at the first target.
-
-    Args:
-        p: the joint under the trial's conditions.
-        control: of the drive.
-        plan: of the trial.
-    """
+    """Simulate one trial from rest at the first target."""
     traces = np.zeros((TRACES, len(plan.mode)))
     _kept_run(p, control, plan, traces)
     return Traces(*traces)

@@ -98,12 +98,7 @@ NOTHING = Known({})
 
 
 def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
-    """What the columns of some files of one bench may be.
-
-    Args:
-        sheets: of the files.
-        known: what a user tells.
-    """
+    """What the columns of some files of one bench may be."""
     assigned = assign([sheet.columns for sheet in sheets], known.said)
     rate_hz = None if "time" in assigned.columns else known.rate_hz or sheets[0].rate_hz
     units = Units([sheet.columns for sheet in sheets], assigned, known.counts_per_turn, rate_hz, known.gear_ratio)

@@ -19,11 +19,6 @@ TRANSACTION_BYTES = 16 * 2**20  # a bench that records meanwhile waits for one o
 class Import:
     """An import under way.
 
-    Args:
-        database: where to.
-        owner: the claim of this process.
-        new: the experiment.
-
     Attributes:
         experiment_id: its number.
     """

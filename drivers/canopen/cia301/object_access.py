@@ -17,7 +17,6 @@ _SDO_BYTES: Final = 8
 _BEGINS: Final = (1, 2)  # download, upload: command specifiers of the client (CiA 301, 7.2.4.3)
 _NAMES_OBJECT: Final = (2, 3, 4)  # upload, download, abort: of the server
 _NO_OBJECT: Final = bytes(3)  # of an abort, where a drive does not say what it aborts
-_ABSENT: Final = (0x0602_0000, 0x0609_0011)  # no such object, no such subindex
 _WRITE_ONLY: Final = 0x0601_0001
 
 
@@ -38,11 +37,6 @@ class ObjectRefusedError(DriveConfigurationError):
     def write_only(self) -> bool:
         """Whether the object is there and may not be read."""
         return self.code == _WRITE_ONLY
-
-    @property
-    def absent(self) -> bool:
-        """Whether the drive says that it has no such object."""
-        return self.code in _ABSENT
 
 
 class ObjectAccess:

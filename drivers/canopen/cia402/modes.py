@@ -53,13 +53,7 @@ _PURPOSE: Final = "mode"
 
 
 class ModeChoice:
-    """Chooses by what the drive lists, what objects it has, and what is known of its units.
-
-    Args:
-        table: of the drive's objects.
-        settings: of the drive.
-        scale: of drive and joint.
-    """
+    """Chooses by what the drive lists, what objects it has, and what is known of its units."""
 
     def __init__(self, table: ObjectTable, settings: CanopenSettings, scale: DriveScale) -> None:
         self._table = table

@@ -13,14 +13,7 @@ _SHARE = 1.0 - exp(-TICK_S / _AVERAGED_OVER_S)  # of the last tick in an average
 
 
 class Measured:
-    """Numbers of the axis as objects tell them.
-
-    Args:
-        axis: what is measured.
-        dictionary: where the ratings are.
-        family: units.
-        rating: of the motor.
-    """
+    """Numbers of the axis as objects tell them."""
 
     def __init__(self, axis: Axis, dictionary: Dictionary, family: Family, rating: Rating) -> None:
         self._axis = axis
