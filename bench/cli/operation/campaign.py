@@ -1,16 +1,13 @@
 """`friction-bench campaign`: many experiments over a grid of parameters, from a TOML file."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from bench.cli.bench_session import session_of
 from bench.cli.operation.service import DEFAULT_URL, Url, ask
 from bench.cli.output import Json, print_json, say, table
-
-if TYPE_CHECKING:  # imported when needed: `--help` starts at once
-    from bench.runs.queue.campaign import CampaignPlan
 
 app = typer.Typer(no_args_is_help=True)
 File = Annotated[Path, typer.Argument(help="TOML: name, kind, [parameters], [grid], repeats, order, seed, tags.")]
@@ -29,7 +26,9 @@ def plan(context: typer.Context, file: File, as_json: Json = False) -> None:
     campaign = read_campaign(file)
     found = plan_campaign(campaign, session_of(context).configuration())
     if as_json:
-        print_json(_fields(campaign.name, found))
+        from bench.service.routes.queue_models import plan_of
+
+        print_json(plan_of(campaign.name, found).model_dump())
         return
     rows = [
         (number, item.kind, ", ".join(f"{name}={value}" for name, value in item.parameters.items()), item.duration_s)
@@ -51,10 +50,3 @@ def start(context: typer.Context, file: File, url: Url = DEFAULT_URL, as_json: J
         return
     minutes = found["duration_s"] / 60.0
     say(f"campaign '{found['name']}': {len(found['item_ids'])} experiments in the queue, about {minutes:.1f} min")
-
-
-def _fields(name: str, found: "CampaignPlan") -> dict[str, object]:
-    from bench.service.routes.queue_models import planned
-
-    items = [planned(item).model_dump() for item in found.items]
-    return {"name": name, "items": items, "duration_s": found.duration_s, "load_changes": found.load_changes}

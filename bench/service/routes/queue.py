@@ -5,7 +5,7 @@ from typing import Annotated
 
 from fastapi import Depends, Path, Query, Request
 
-from bench.runs.queue.campaign import Campaign, CampaignPlan, plan_campaign
+from bench.runs.queue.campaign import Campaign, plan_campaign
 from bench.runs.queue.overview import queue_state
 from bench.service.auth.access import Operator, allow_read, require_operator
 from bench.service.auth.audit_trail import note
@@ -22,7 +22,7 @@ from bench.service.routes.queue_models import (
     Plan,
     Queue,
     StartedCampaign,
-    planned,
+    plan_of,
 )
 from bench.service.services import ConductorOf, RunnerOf, StoreOf
 from bench.store.tables.queue import NewItem
@@ -142,7 +142,7 @@ def resume(conductor: ConductorOf, runner: RunnerOf, request: Request, caller: O
 )
 def plan(runner: RunnerOf, body: Campaign) -> Plan:
     """Checks every experiment, and changes nothing."""
-    return _answer(body.name, plan_campaign(body, runner.configuration))
+    return plan_of(body.name, plan_campaign(body, runner.configuration))
 
 
 @taken_in("/campaigns", summary="Put a campaign into the queue")
@@ -163,15 +163,6 @@ def start(
         common = {name: kept[name] for name in ("name", "operator", "note", "tags")}
         item_ids = conductor.add_items(found.items, {**common, "definition": kept}, by=caller.name)
         note(request, f"started campaign '{body.name}': {len(item_ids)} experiments")
-        return StartedCampaign(item_ids=item_ids, **dict(_answer(body.name, found)))
+        return StartedCampaign(item_ids=item_ids, **dict(plan_of(body.name, found)))
 
     return once(store.access.start_keys, caller.name, key, {"campaign": kept}, take_in, StartedCampaign)
-
-
-def _answer(name: str, found: CampaignPlan) -> Plan:
-    return Plan(
-        name=name,
-        items=[planned(one) for one in found.items],
-        duration_s=found.duration_s,
-        load_changes=found.load_changes,
-    )

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints, Validation
 from bench.config.validation import problems
 from bench.experiments.registry import find_kind
 from bench.json_types import Json
-from bench.runs.queue.campaign import MOST_ITEMS
+from bench.runs.queue.campaign import MOST_ITEMS, CampaignPlan
 from bench.service.http.problems import InvalidFieldsError, field_problems
 from bench.store.tables.queue import NewItem
 from bench.store.tables.tags import LONGEST_TAG, MOST_TAGS
@@ -152,7 +152,12 @@ class StartedCampaign(Plan):
     item_ids: list[int]
 
 
-def planned(item: NewItem) -> PlannedItem:
-    """An item of a plan as it is answered."""
+def plan_of(name: str, found: CampaignPlan) -> Plan:
+    """The plan of a campaign as it is answered."""
+    items = [_planned(one) for one in found.items]
+    return Plan(name=name, items=items, duration_s=found.duration_s, load_changes=found.load_changes)
+
+
+def _planned(item: NewItem) -> PlannedItem:
     loads_kg = [float(load) for load, _ in item.loads]
     return PlannedItem(kind=item.kind, parameters=item.parameters, loads_kg=loads_kg, duration_s=item.duration_s)
