@@ -8,6 +8,7 @@ from typing import Any
 import httpx
 
 from bench.client.errors import Refused, Unreachable
+from bench.trust import trusted
 
 TRIES = 3
 PAUSE_S = 0.5
@@ -27,7 +28,7 @@ class Connection:
     def __init__(self, url: str, token: str | None, timeout_s: float, ca_file: str | None) -> None:
         self.url = url.rstrip("/")
         headers = {} if token is None else {"Authorization": f"Bearer {token}"}
-        trust = True if ca_file is None else _trusting(ca_file)
+        trust = trusted(self.url, ca_file)
         self._http = httpx.Client(base_url=f"{self.url}/api/v1", headers=headers, timeout=timeout_s, verify=trust)
 
     def close(self) -> None:
@@ -119,9 +120,3 @@ def _checked(answer: httpx.Response) -> httpx.Response:
 
 def _given(query: Mapping[str, object]) -> dict[str, Any]:
     return {name: value for name, value in query.items() if value is not None}
-
-
-def _trusting(ca_file: str) -> Any:
-    import ssl
-
-    return ssl.create_default_context(cafile=ca_file)

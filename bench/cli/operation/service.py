@@ -47,10 +47,13 @@ def ask(session: BenchSession, method: str, url: str, path: str, body: Mapping[s
     """
     import httpx  # here: its import takes longer than most commands
 
+    from bench.trust import trusted
+
     token = token_for(session, url)
     headers = {} if token is None else {"Authorization": f"Bearer {token}"}
+    whole = f"{url}/api/v1{path}"
     try:
-        answer = httpx.request(method, f"{url}/api/v1{path}", json=body, headers=headers, timeout=TIMEOUT_S)
+        answer = httpx.request(method, whole, json=body, headers=headers, timeout=TIMEOUT_S, verify=trusted(url))
     except (httpx.HTTPError, httpx.InvalidURL) as error:
         raise ServiceError(f"{url} does not answer ({error}); is 'friction-bench serve' running there?") from error
     if answer.is_error:
