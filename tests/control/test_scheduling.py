@@ -1,9 +1,11 @@
 """The process of the control loop comes before others while the wall clock paces it, and never fails for it."""
 
+import gc
 import os
 import subprocess
 import sys
 import threading
+from itertools import count
 
 import pytest
 
@@ -69,3 +71,20 @@ def test_what_somebody_has_chosen_stays():
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "True SCHED_RR 3, as it was started"
+
+
+def test_what_is_there_is_looked_through_for_garbage_once_in_many_experiments(monkeypatch):
+    monkeypatch.setattr(scheduling, "_ended", count(1))
+    monkeypatch.setattr(scheduling, "EXPERIMENTS_A_SEARCH", 2)
+    there = [[]]
+    with scheduling.undisturbed(paced=False):
+        assert gc.get_freeze_count() > 0
+    assert not is_looked_through(there)
+    with scheduling.undisturbed(paced=False):
+        assert not is_looked_through(there)
+    assert is_looked_through(there)
+    gc.freeze()  # as it was before
+
+
+def is_looked_through(one) -> bool:
+    return any(other is one for other in gc.get_objects())
