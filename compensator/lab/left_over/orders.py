@@ -63,12 +63,13 @@ def line_of(gathered: Candidates, most: float = PLAIN.line, most_growing: float 
     path = Path.of(dataset, gathered.rows, gathered.weights)
     orders = path.orders
     sizes = path.scanned(base.basis, base.residual, orders, (FORCE, FRICTION, GROWING))
-    peaks = [one for kind in (FORCE, FRICTION) if (one := _peak(path, base, sizes[kind], kind)) is not None]
     tries = len(orders) / STEPS
+    both = [_peak(path, base, sizes[kind], kind, 2.0 * tries, most) for kind in (FORCE, FRICTION)]
+    peaks = [one for one in both if one is not None]
     best = min(peaks, key=lambda one: one.chance, default=None)
     if best is not None and min(1.0, 2.0 * tries * best.chance) <= most:
         return _line(gathered, path, base, best, 2.0 * tries)
-    growing = _peak(path, base, sizes[GROWING], GROWING)
+    growing = _peak(path, base, sizes[GROWING], GROWING, tries, most_growing)
     if growing is None or tries * growing.chance > most_growing:
         return None
     steady = max(float(sizes[kind].max()) for kind in (FORCE, FRICTION))
@@ -112,11 +113,19 @@ class _Peak:
     noise: float
 
 
-def _peak(path: Path, base: Base, sizes: FloatArray, kind: str) -> _Peak | None:
-    """Of the sizes (m,) of all orders; None where none stands out.
+def _peak(path: Path, base: Base, sizes: FloatArray, kind: str, tries: float, most: float) -> _Peak | None:
+    """Of the sizes (m,) of all orders; None where none stands out by so many tries.
 
     The noise at an order is what is left around with the line in the model: where only the slowest rows show it, it
     spreads over many orders.
+
+    Args:
+        path: of the rows.
+        base: the model.
+        sizes: of the kind.
+        kind: of the line.
+        tries: independent orders, of all kinds, that it is the best of.
+        most: chance in noise alone, over all of them, up to which it is none.
     """
     orders = path.orders
     over, _ = over_noise(orders, sizes[None], np.ones(1), (REACH[0] * path.once, REACH[1] * path.once))
@@ -128,6 +137,9 @@ def _peak(path: Path, base: Base, sizes: FloatArray, kind: str) -> _Peak | None:
     beside = base.extended(path.factor(kind) * path.columns(orders[best : best + 1]))
     left = path.scanned(beside.basis, beside.residual, around, (kind,))[kind]
     noise = 0.5 * float(np.mean(left[left > 0.0])) if left.any() else TINY  # of two
+    # over noise that were known for sure, the chance would be the least; what follows takes longest
+    if min(1.0, tries * float(np.exp(-float(sizes[best]) / (2.0 * noise)))) > most:
+        return None
     columns = beside.beyond(path.factor(kind) * path.columns(around))[:, np.tile(left > 0.0, 2)]
     chance = chance_of_one(float(sizes[best]) / (2.0 * noise), 0.5 * independent_of(columns))
     order = path.refined(base.basis, base.residual, float(orders[best]), kind)
