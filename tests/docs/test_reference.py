@@ -45,8 +45,9 @@ def test_every_setting_stands_with_unit_and_default() -> None:
 
 
 def test_every_effect_and_every_kind_is_there() -> None:
-    assert all(f"\n## {effect.title}\n" in effects.page() for effect in catalogue().values())
-    assert all(f"\n## {kind.title}\n" in experiments.page() for kind in KINDS.values())
+    of_effects, of_kinds = effects.page(), experiments.page()
+    assert all(f"\n## {effect.title}\n" in of_effects for effect in catalogue().values())
+    assert all(f"\n## {kind.title}\n" in of_kinds for kind in KINDS.values())
 
 
 def test_the_table_of_columns_is_that_of_the_program() -> None:
