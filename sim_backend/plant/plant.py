@@ -45,6 +45,12 @@ class Truth:
 
 
 _TRUE = tuple(name for name in Truth.__dataclass_fields__ if name != "time_s")
+_FORGOTTEN = (
+    "current_a", "contact_n_m", "leant_n_m", "hand_n_m", "clutch_rad", "slid",
+    "bristle_rad", "arm_bristle_rad", "rest_s", "arm_rest_s",
+    "hose_first_rad", "hose_second_rad", "hose_third_rad",
+)  # fmt: skip
+_PLACED = ("rotor_rad", "rotor_rad_s", "rotor_mean_rad_s", "arm_rad", "arm_rad_s", "arm_mean_rad_s", *_FORGOTTEN)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +82,8 @@ class Plant:
         self._unbraked: Friction | None = None
         self._whole = pack(Whole(parameters, constants_of(parameters), at_rest(seed, parameters.heat.start_c)))
         self._state = self._whole["state"]  # a view of it
+        # and one of each value, at hand: a name that the record looks up costs five times as much
+        self._values = {name: self._state[name] for name in (*_TRUE, *_PLACED)}
         self._state["supply_v"] = parameters.supply.voltage_v
         # the record's own count of steps, at hand: reading a record from Python takes as long as a control cycle
         self._origin_s, self._steps = 0.0, 0
@@ -170,14 +178,9 @@ class Plant:
 
     def place(self, rotor_rad: float, arm_rad: float, rotor_rad_s: float = 0.0, arm_rad_s: float = 0.0) -> None:
         """Put rotor (motor angle / ratio) and arm where a hand would, moving as given, without current."""
-        placed = {"rotor_rad": rotor_rad, "rotor_rad_s": rotor_rad_s, "rotor_mean_rad_s": rotor_rad_s}
-        placed |= {"arm_rad": arm_rad, "arm_rad_s": arm_rad_s, "arm_mean_rad_s": arm_rad_s}
-        forgotten = ("current_a", "contact_n_m", "leant_n_m", "hand_n_m", "clutch_rad", "slid")
-        bristles = ("bristle_rad", "arm_bristle_rad", "rest_s", "arm_rest_s")
-        hose = ("hose_first_rad", "hose_second_rad", "hose_third_rad")
-        placed |= dict.fromkeys(forgotten + bristles + hose, 0.0)
-        for name, value in placed.items():
-            self._state[name] = value
+        moving = (rotor_rad, rotor_rad_s, rotor_rad_s, arm_rad, arm_rad_s, arm_rad_s)
+        for name, value in zip(_PLACED, (*moving, *[0.0] * len(_FORGOTTEN)), strict=True):
+            self._values[name][0] = value
         self._forget()
 
     def truth(self) -> Truth:
@@ -186,8 +189,8 @@ class Plant:
 
     def true_values(self, *names: str) -> list[float]:
         """Return some of the true state, by the names of `Truth` but the time: each takes a while to read."""
-        state = self._state[0]
-        return [float(state[name]) for name in names]
+        values = self._values
+        return [float(values[name].item()) for name in names]
 
     def energy(self) -> Energy:
         """Return the energy balance so far."""
