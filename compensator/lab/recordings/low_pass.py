@@ -7,6 +7,7 @@ arithmetic.
 
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import groupby
 
 import numpy as np
 from numba import njit
@@ -66,13 +67,13 @@ def low_pass_thinned(
     some = [int(index) for index in np.argsort(-lengths, kind="stable") if index not in untouched and lengths[index]]
     if not some:
         return thinned
-    sections, steady = _sections_of_columns(cutoff_hz, tuple(rates_hz[index] for index in some), len(used))
-    padding = PADDING * (2 * len(sections) + 1)
+    designs, steady, ends_of = _designs(cutoff_hz, tuple(rates_hz[index] for index in some), len(used))
+    padding = PADDING * (FILTER_ORDER + 1)
     longest = int(lengths[some[0]]) + 2 * padding
     first_rows = longest - 2 * padding - lengths[some]
     together = np.empty((longest, len(used) * len(some)))
     _put_with_odd_extension(whole, used, starts[some], lengths[some], together, padding)
-    _there_and_back(sections, steady, np.repeat(first_rows, len(used)), together)
+    _there_and_back(designs, steady, ends_of, np.repeat(first_rows, len(used)), together)
     chosen = [picked[index] for index in some]
     counts = np.array([len(one) for one in chosen])
     _take(together, np.concatenate(chosen), counts, first_rows + padding, ends[some], used, thinned)
@@ -94,14 +95,19 @@ def filter_sections(cutoff_hz: float, rate_hz: float) -> tuple[FloatArray, Float
 
 
 @lru_cache(maxsize=256)
-def _sections_of_columns(cutoff_hz: float, rates_hz: tuple[float, ...], width: int) -> tuple[FloatArray, FloatArray]:
-    """Those of each column of blocks of such rates and a width, (sections, 6, k) and (sections, 2, k).
+def _designs(cutoff_hz: float, rates_hz: tuple[float, ...], width: int) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Filters of blocks of such rates and a width, those side by side that are alike once.
 
     A fit asks for the same trials side by side again and again.
+
+    Returns:
+        Both sections of each, (designs, 2, 6); the states that a constant 1 settles to, (designs, 4); and the columns
+        that each ends at, (designs,).
     """
-    designs = [filter_sections(cutoff_hz, rate_hz) for rate_hz in rates_hz]
-    sections, steady = (np.repeat(kind, width, axis=0).transpose(1, 2, 0) for kind in zip(*designs, strict=True))
-    return np.ascontiguousarray(sections), np.ascontiguousarray(steady)
+    alike = [(rate_hz, len(list(group))) for rate_hz, group in groupby(rates_hz)]
+    found = [filter_sections(cutoff_hz, rate_hz) for rate_hz, _ in alike]
+    designs, steady = (np.array(kind) for kind in zip(*found, strict=True))
+    return designs, steady.reshape(len(alike), 4), width * np.cumsum([count for _, count in alike])
 
 
 @njit(cache=True)
@@ -169,50 +175,66 @@ def _take(
 
 
 @njit(cache=True)
-def _there_and_back(sections: FloatArray, steady: FloatArray, first_rows: IntArray, values: FloatArray) -> None:
+def _there_and_back(
+    designs: FloatArray, steady: FloatArray, ends: IntArray, first_rows: IntArray, values: FloatArray
+) -> None:
     """Filter along the first axis of (n, k), forward and backward, each from the steady state of its first value.
 
     Args:
-        sections: of each column's filter, shape (sections, 6, k).
-        steady: state that a constant 1 settles to, shape (sections, 2, k).
+        designs: of filters, shape (designs, 2, 6).
+        steady: states that a constant 1 settles to, shape (designs, 4).
+        ends: columns that each design ends at, shape (designs,).
         first_rows: where each column begins, rising; all end together; shape (k,).
         values: replaced, shape (n, k).
     """
     count, columns = values.shape
-    first, second = np.empty((len(sections), columns)), np.empty((len(sections), columns))
+    state = np.empty((4, columns))
     begun = 0
     for row in range(count):
+        before = begun
         while begun < columns and first_rows[begun] <= row:
-            _settle(steady, first, second, values, row, begun)
             begun += 1
-        _step(sections, first, second, values, row, begun)
-    for column in range(columns):
-        _settle(steady, first, second, values, count - 1, column)
+        _settle(steady, ends, state, values[row], before, begun)
+        _step(designs, ends, state, values[row], begun)
+    _settle(steady, ends, state, values[count - 1], 0, columns)
     for row in range(count - 1, -1, -1):
         while begun > 0 and first_rows[begun - 1] > row:
             begun -= 1
-        _step(sections, first, second, values, row, begun)
+        _step(designs, ends, state, values[row], begun)
 
 
 @njit(cache=True, inline="always")
-def _settle(
-    steady: FloatArray, first: FloatArray, second: FloatArray, values: FloatArray, row: int, column: int
-) -> None:
-    for section in range(len(steady)):
-        first[section, column] = steady[section, 0, column] * values[row, column]
-        second[section, column] = steady[section, 1, column] * values[row, column]
+def _settle(steady: FloatArray, ends: IntArray, state: FloatArray, line: FloatArray, first: int, end: int) -> None:
+    """Columns of a row, from one on, begin at the state that their value would settle to."""
+    start = 0
+    for design in range(len(ends)):
+        for column in range(max(start, first), min(ends[design], end)):
+            for part in range(4):
+                state[part, column] = steady[design, part] * line[column]
+        start = ends[design]
 
 
 @njit(cache=True, inline="always")
-def _step(
-    sections: FloatArray, first: FloatArray, second: FloatArray, values: FloatArray, row: int, begun: int
-) -> None:
-    for section in range(len(sections)):
-        b0, b1, b2 = sections[section, 0], sections[section, 1], sections[section, 2]
-        a1, a2 = sections[section, 4], sections[section, 5]
-        for column in range(begun):  # innermost, so that they are done side by side
-            put_in = values[row, column]
-            out = b0[column] * put_in + first[section, column]
-            first[section, column] = b1[column] * put_in - a1[column] * out + second[section, column]
-            second[section, column] = b2[column] * put_in - a2[column] * out
-            values[row, column] = out
+def _step(designs: FloatArray, ends: IntArray, state: FloatArray, line: FloatArray, begun: int) -> None:
+    """A row goes through both sections, each a transposed direct form.
+
+    A design's numbers are at hand for all of its columns: to read them with each value takes longer than to filter it.
+    """
+    start = 0
+    for design in range(len(ends)):
+        end = max(min(ends[design], begun), start)
+        one, other = designs[design, 0], designs[design, 1]
+        b0, b1, b2, a1, a2 = one[0], one[1], one[2], one[4], one[5]
+        d0, d1, d2, c1, c2 = other[0], other[1], other[2], other[4], other[5]
+        own, p, q = line[start:end], state[0, start:end], state[1, start:end]
+        r, s = state[2, start:end], state[3, start:end]
+        for column in range(end - start):  # innermost, and of views that begin at 0: they are done side by side
+            put_in = own[column]
+            between = b0 * put_in + p[column]
+            p[column] = b1 * put_in - a1 * between + q[column]
+            q[column] = b2 * put_in - a2 * between
+            out = d0 * between + r[column]
+            r[column] = d1 * between - c1 * out + s[column]
+            s[column] = d2 * between - c2 * out
+            own[column] = out
+        start = ends[design]
