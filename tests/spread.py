@@ -30,6 +30,7 @@ LONG = (
     "tests/stopping/test_commission.py",
     "tests/browser/test_simulated_trials.py",
     "tests/lab/diagnosis/test_diagnose.py",
+    "tests/recordings/test_explain.py",
     "tests/lab/diagnosis/test_search.py",
     "tests/second_plant/test_recording.py",
     "tests/docs/test_tutorial.py",
