@@ -16,7 +16,13 @@ from compensator.lab.diagnosis.physical import (
 )
 from compensator.lab.diagnosis.remaining import large_bursts, what_remains, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
-from compensator.lab.diagnosis.wording import bending_in_words, missing_in_words, nothing_in_words, unknown_in_words
+from compensator.lab.diagnosis.wording import (
+    bending_in_words,
+    missing_in_words,
+    nothing_in_words,
+    partly_in_words,
+    unknown_in_words,
+)
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import Candidates
@@ -41,7 +47,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     shown = [item for item in shapes if item.score > 0.0][:EXAMINED]
     examined = examine(fit, gathered, shown if len(shown) >= FEWEST_SHOWN else shapes[:FEWEST_SHOWN])
     family = _Family(fit, gathered, named, shapes, examined)
-    return family.curve(generic) or family.name() or family.bend() or family.nothing(generic)
+    return family.curve(generic) or family.name() or family.unlike_any() or family.nothing(generic)
 
 
 @dataclass(frozen=True)
@@ -116,8 +122,8 @@ class _Family:
         if impossible := why_impossible(explained, candidate.effect.name):
             return impossible
         examined = [first, *(one for one in self.examined if one is not candidate)]
-        sentence = missing_in_words(first, own_chance)
         notes = what_remains(explained, show_in, candidate.effect.name)
+        sentence = missing_in_words(first, own_chance) + (partly_in_words(first) if notes else "")
         remains, evidence = bool(notes), best.noncentrality
         return Answer("missing", sentence, own_chance, examined, None, notes, remains, explained, evidence)
 
@@ -137,28 +143,37 @@ class _Family:
         """The chance that luck alone brings anything as far as this effect."""
         return among_all(self.named.chance_of(candidate.effect.name))
 
-    def bend(self) -> Answer | None:
-        """What bends along with the joint, where that is not the friction it was taken for; None without any.
+    def unlike_any(self) -> Answer | None:
+        """What acts near reversals and explains most, for sure, but cannot be the effect it looks like; None without.
 
-        It explains most, for sure, and is but a part of the friction in whose place it stands, or goes too far.
+        Its size is beyond what that can be; or it bends along with the joint: it is but a part of the friction in whose
+        place it stands, or goes too far.
         """
         most, gathered = self.most, self.gathered
-        bends = next((one for one in self.examined if one.effect.name == most.block.name), None)
-        if bends is None or not is_sure(bends) or not is_within_bounds(gathered, most):
+        one = next((one for one in self.examined if one.effect.name == most.block.name), None)
+        if one is None or one.effect.rows == "sliding" or not is_sure(one):
             return None
-        p_value = self._chance_of(bends)
+        p_value = self._chance_of(one)
         if p_value > SIGNIFICANT:
             return None
-        too_far = bends.effect.least_of_friction > 0.0 and is_past_scan(gathered, most)
-        # a shorter distance of more friction may explain nearly as much, and then nobody knows how large a part it is
+        ranked = [one, *(other for other in self.examined if other is not one)]
+        if is_within_bounds(gathered, most):
+            too_far = one.effect.least_of_friction > 0.0 and is_past_scan(gathered, most)
+            if not too_far and not self._is_part(most):
+                return None
+            sentence = bending_in_words(one, too_far, self.fit.dataset.facts, p_value)
+        else:
+            sentence = unknown_in_words(one, one.effect.driver, p_value)
+        return Answer("unknown-effect", sentence, p_value, ranked, one.effect.driver, [], remains=True)
+
+    def _is_part(self, most: Evidence) -> bool:
+        """Whether what explains most is but a part of the friction: of any shape that may be it.
+
+        A shorter distance of more friction may explain nearly as much, and then nobody knows how large a part it is.
+        """
         alike = (one for one in self.named.evidence if one.block.name == most.block.name)
         likely = [one for one in alike if one.noncentrality >= FORMULA_SHARE * most.noncentrality]
-        part = all(is_too_small(gathered, one) and not is_before_scan(gathered, one) for one in likely)
-        if not too_far and not part:
-            return None
-        ranked = [bends, *(one for one in self.examined if one is not bends)]
-        sentence = bending_in_words(bends, too_far, self.fit.dataset.facts, p_value)
-        return Answer("unknown-effect", sentence, p_value, ranked, bends.effect.driver, [], remains=True)
+        return all(is_too_small(self.gathered, one) and not is_before_scan(self.gathered, one) for one in likely)
 
     def nothing(self, generic: Screening | None) -> Answer:
         """That no effect is confirmed, and what is left all the same, where free curves are asked for."""

@@ -71,14 +71,13 @@ class FourFamilies:
     def _goes_before(self, one: Answer, named: Fit, first: Answer) -> bool:
         """Whether a name goes before another answer: before a curve, unless that predicts other trials better for sure.
 
-        Before another name, where it does so itself; one of the chain only before one of the same rows. A delay lowers
-        many errors a little: what goes by the rate of the effort needs more evidence, too.
+        Before another name, where it does so itself, near reversals too if either is judged there. A delay lowers many
+        errors a little: what goes by the rate of the effort needs more evidence, too.
         """
-        rows: MotionRows = "sliding" if one is self.chain else "moving"
+        rows: MotionRows = "moving" if self.memory is one or self.memory is first else "sliding"
         if first.verdict == "missing":
-            comparable = one is not self.chain or first is self.steady
             late = one.candidates[0].effect.driver == "effort_rate"
-            enough = comparable and (not late or one.evidence > first.evidence)
+            enough = not late or one.evidence > first.evidence
             return enough and first.explained is not None and _predicts_better(named, first.explained, rows)
         curve = with_curve(self.gathered.fit, first.driver)
         return curve is None or not _predicts_better(curve, named, rows)

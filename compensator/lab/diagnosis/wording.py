@@ -8,6 +8,7 @@ from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.base import HYSTERESIS_DRIVER
 from compensator.lab.screening.evidence import least_p_value
 
+HALF = 0.5  # of the error's power
 LOOK_AT_HOSES = "Look at hoses, cables and seals that bend with the joint."
 
 
@@ -18,6 +19,17 @@ def missing_in_words(best: Candidate, p_value: float) -> str:
     return (
         f"{named_in_words(best, 'trials')}: adding it changes the held-out error{where} from {best.before:.2%} to "
         f"{best.after:.2%}{sure} ({gain}; {chance_in_words(p_value)})."
+    )
+
+
+def partly_in_words(best: Candidate) -> str:
+    """A further sentence where more than noise is left beside an effect that explains less than half of the power."""
+    explained = 1.0 - (1.0 - best.gain.value) ** 2
+    if explained >= HALF:
+        return ""
+    return (
+        f" It explains {explained:.0%} of the error's power, and what it leaves is more than noise: it may be the "
+        "smaller effect of two, or stand for one that no formula has."
     )
 
 

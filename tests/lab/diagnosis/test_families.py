@@ -9,6 +9,7 @@ import pytest
 from compensator.lab.diagnosis import examination, families
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.families import answer_of
+from compensator.lab.diagnosis.note import Note
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_effects, fit_model, widened
 from compensator.lab.model.gain import Gain
@@ -60,6 +61,39 @@ def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypa
     assert answer.candidates[0].effect.name == "elasticity"
     assert answer.verdict == verdict
     assert (answer.explained is not None) == (verdict == "missing")
+
+
+@pytest.mark.parametrize(("low", "verdict"), [(0.2, "unknown-effect"), (-0.1, "nothing")])
+def test_what_shows_near_reversals_for_sure_and_cannot_be_its_formula_is_none_of_the_catalogue(
+    monkeypatch, twisted, low, verdict
+):
+    """As a base that rocks looks like a spring beyond the gear, with another load than the joint's."""
+    fit, gathered, named = twisted
+    impossible = "it would be 0.2, allowed 0.3 to 3"
+    monkeypatch.setattr(
+        families,
+        "examine",
+        lambda *given: [
+            replace(one, gain=Gain(0.3, low, 0.4), impossible=impossible) for one in examination.examine(*given)
+        ],
+    )
+    monkeypatch.setattr(families, "is_within_bounds", lambda *_: False)
+    answer = answer_of(fit, gathered, named, None)
+    assert (answer.verdict, answer.remains) == (verdict, verdict == "unknown-effect")
+    assert (f"joint elasticity, cannot be it: {impossible}" in answer.sentence) == answer.remains
+
+
+@pytest.mark.parametrize(("gain", "left", "said"), [(0.1, True, True), (0.1, False, False), (0.5, True, False)])
+def test_a_name_that_explains_the_smaller_part_and_leaves_more_than_noise_says_so(
+    monkeypatch, twisted, gain, left, said
+):
+    fit, gathered, named = twisted
+    sure = Gain(gain, 0.06, 0.6)
+    monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=sure))
+    monkeypatch.setattr(families, "what_remains", lambda *_: [Note("recurs", "Something is left.")] if left else [])
+    answer = answer_of(fit, gathered, named, None)
+    assert answer.verdict == "missing"
+    assert ("explains 19% of the error's power" in answer.sentence) == said
 
 
 @pytest.mark.parametrize(("gain", "verdict"), [(Gain(0.3, 0.2, 0.4), "missing"), (Gain(-0.1, -0.2, 0.1), "nothing")])

@@ -41,6 +41,9 @@ UNSEEN = replace(named("rate_dependent_breakaway"), explained=None)  # in motion
         (COGGING, BACKLASH, None, LATER, {("effort_filter", "cogging"): "sliding"}, LATER),
         (COGGING, BACKLASH, None, NOTHING, {("backlash", "cogging"): "moving"}, BACKLASH),
         (COGGING, BACKLASH, None, NOTHING, {("backlash", "cogging"): "sliding"}, COGGING),
+        (NOTHING, BACKLASH, None, LATER, {("effort_filter", "backlash"): "moving"}, LATER),
+        (NOTHING, BACKLASH, None, LATER, {("effort_filter", "backlash"): "sliding"}, BACKLASH),
+        (NOTHING, BACKLASH, None, DELAY, {("measurement_delay", "backlash"): "moving"}, BACKLASH),
         (CURVE, BACKLASH, None, NOTHING, {}, BACKLASH),  # a name says more than a curve
         (CURVE, BACKLASH, None, NOTHING, {("curve", "backlash"): "moving"}, CURVE),
         (CURVE, NOTHING, DWELL, NOTHING, {}, DWELL),
