@@ -9,6 +9,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 # the matrices are small, and waiting threads cost more than they save; read when numpy is imported
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -19,6 +20,10 @@ atexit.register(shutil.rmtree, os.environ["XDG_STATE_HOME"], ignore_errors=True)
 
 # of what is imported nothing becomes garbage: a fifth of the collection of tests would go into looking through it
 gc.disable()
+
+# what is drawn at random takes longer where others are at work on the machine, which is no fault of a test
+settings.register_profile("shared machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("shared machine")
 
 # a shell that starts the tests in the background lets them, and every process of theirs, ignore Ctrl-C
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

@@ -133,7 +133,7 @@ SEARCHES = [(rest_search, QUICK, improved.KnownJoint), (zero_speed_search, PLAIN
 
 
 @pytest.mark.parametrize(("machine", "limits", "joint"), SEARCHES, ids=["improved", "flow chart"])
-@settings(deadline=None, max_examples=60, derandomize=True)
+@settings(max_examples=60, derandomize=True)
 @given(planned=accidents, load_a=st.sampled_from((-0.3, 0.0, 0.5)), friction_a=st.sampled_from((0.1, 0.4)))
 @example(planned={}, load_a=0.5, friction_a=0.4)
 def test_accidents_leave_a_result_with_all_of_its_conditions_or_a_reason(
@@ -145,7 +145,7 @@ def test_accidents_leave_a_result_with_all_of_its_conditions_or_a_reason(
 
 
 @pytest.mark.parametrize(("machine", "limits", "joint"), SEARCHES, ids=["improved", "flow chart"])
-@settings(deadline=None, max_examples=60, derandomize=True)
+@settings(max_examples=60, derandomize=True)
 @given(shown=anything, first=st.integers(0, 120))
 def test_a_sensor_that_shows_anything_at_all(machine, limits, joint, shown, first):
     places = [place for place, cycles in shown for _ in range(cycles)]

@@ -4,7 +4,7 @@ from math import nan, pi
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from compensator.errors import ModelParameterError
@@ -34,7 +34,6 @@ def test_what_is_not_known_is_let_go():
     assert after(LAW, nan, 50, start_n_m=0.6) == 0.0
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])  # the machine may be busy
 @given(st.lists(st.floats(allow_nan=True, allow_infinity=True), min_size=1, max_size=20))
 def test_no_load_however_wild_gets_past_limit_and_slew(loads):
     reflected = 0.0

@@ -68,7 +68,7 @@ def assert_same(found: list[Recording], expected: list[Recording]) -> None:
             assert one.channels[name].tobytes() == values.tobytes(), name
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(SETS, st.sampled_from(["set", "set.zip"]))
 def test_every_set_reads_back_as_itself(found: tuple[Recording, ...], name: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
@@ -79,7 +79,7 @@ def test_every_set_reads_back_as_itself(found: tuple[Recording, ...], name: str)
         assert_same(back.recordings, list(found))
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(SETS, st.sampled_from(["set", "set.zip"]))
 def test_the_store_gives_back_what_it_was_given(store: Store, found: tuple[Recording, ...], name: str) -> None:
     with tempfile.TemporaryDirectory() as folder:

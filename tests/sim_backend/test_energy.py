@@ -60,7 +60,7 @@ def test_energy_balance_closes_over_a_long_mixed_run_with_every_mechanism_on() -
     assert abs(left_over_j) < 1e-6 * through_j
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(
     seed=st.integers(0, 2**32 - 1),
     ratio=st.floats(1.0, 100.0),

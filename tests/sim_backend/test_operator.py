@@ -115,7 +115,7 @@ def test_hand_takes_hold_at_the_arm_s_speed_and_lets_go() -> None:
     assert (caught.truth().arm_rad_s, caught.truth().hand_n_m) == (leaving, 0.0)
 
 
-@settings(deadline=None, max_examples=50)
+@settings(max_examples=50)
 @given(
     mass=st.floats(0.0, 3.0),
     damping=st.floats(0.0, 40.0),

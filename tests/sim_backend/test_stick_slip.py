@@ -1,4 +1,4 @@
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from sim_backend.plant import stick_slip
@@ -26,7 +26,6 @@ def _obeys_the_law(body: Body, friction: float, speed: float) -> bool:
     return -body.lower - slack <= friction <= body.upper + slack
 
 
-@settings(deadline=None)
 @given(bodies, bodies, st.floats(1e-6, 1e-1), impulses, guesses)
 def test_solution_obeys_momentum_and_the_law_of_friction(
     rotor: Body, arm: Body, k: float, c: float, guess: tuple[float, float]
@@ -37,14 +36,12 @@ def test_solution_obeys_momentum_and_the_law_of_friction(
     assert _obeys_the_law(arm, arm.impulse + teeth - arm.diagonal * v_a, v_a)
 
 
-@settings(deadline=None)
 @given(bodies, bodies)
 def test_bodies_apart_obey_it_each_on_its_own(rotor: Body, arm: Body) -> None:
     for body, speed in zip((rotor, arm), free_speeds(rotor, arm), strict=True):
         assert _obeys_the_law(body, body.impulse - body.diagonal * speed, speed)
 
 
-@settings(deadline=None)
 @given(bodies, bodies, st.floats(1e-6, 1e-1), impulses, guesses, guesses)
 def test_solution_does_not_depend_on_the_guess(
     rotor: Body, arm: Body, k: float, c: float, one: tuple[float, float], other: tuple[float, float]
