@@ -21,7 +21,7 @@ from compensator.lab.rows.dataset import Dataset
 STEPS = 4.0  # per width of a line, as of those in time
 MOST_ORDERS = 2000  # a joint of many turns is looked at up to so many
 PLACES = 50  # along the travel
-SHOWN = 0.2  # of them: what the filter shows at fewer has hardly been seen to come back
+SHOWN = 0.1  # of them: what the filter shows at fewer has hardly been seen to come back
 AT_ONCE = 2**21  # values of columns
 NEW = 0.02  # share of a column's power beside the model: of less, little can be told from the model itself
 APART = 1e-3  # of their powers: of less, cosine and sine can hardly be told from each other beside the model

@@ -59,7 +59,7 @@ def test_the_highest_order_is_one_that_enough_of_the_travel_was_slow_enough_for(
     steady = path_of(np.linspace(-1.0, 1.0, 2000), np.full(2000, 0.5))
     swung = path_of(np.sin(phase), 2.0 * np.abs(np.cos(phase)))
     assert steady.highest == pytest.approx(30.0 / 0.5)
-    assert swung.highest == pytest.approx(30.0 / (2.0 * np.sqrt(1.0 - 0.84**2)), rel=0.02)  # a tenth at either end
+    assert swung.highest == pytest.approx(30.0 / (2.0 * np.sqrt(1.0 - 0.92**2)), rel=0.02)  # a twentieth at either end
     assert swung.orders.max() <= swung.highest
     grid = [(3.0,), (20.0,), (300.0,)]
     assert swung.shown(grid) == [(3.0,), (20.0,)]
