@@ -67,7 +67,7 @@ def why_not_possible(gathered: Candidates, item: Evidence) -> str:
     They are within bounds, and as large as what they stand in the place of. What the owner tells of is not missing.
     """
     if not is_within_bounds(gathered, item):
-        return f"it would be {_size(gathered, item)}"
+        return _size(gathered, item)
     if is_too_small(gathered, item):
         return f"it would be under {effect_named(item.block.name).least_of_friction:.0%} of dry friction"
     if is_told(gathered, item):
@@ -87,10 +87,16 @@ def _size(gathered: Candidates, item: Evidence) -> str:
     ranges = effect.ranges_in(_quantity(gathered))
     found = gathered.bases[item.block.base].coefficients(item.block.columns)
     return ", ".join(
-        f"{_with_unit(dataset, value, one)}, allowed {low:.3g} {'or more' if np.isinf(high) else f'to {high:.3g}'}"
+        f"its {one.name} would be {_with_unit(dataset, value, one)}, allowed {_range(low, high)}"
         for one, value, (low, high) in zip(effect.parameters, found, ranges, strict=True)
         if not low <= value <= high
     )
+
+
+def _range(low: float, high: float) -> str:
+    if np.isinf(high):
+        return f"{low:.3g} or more"
+    return f"{high:.3g} or less" if np.isinf(low) else f"{low:.3g} to {high:.3g}"
 
 
 def _with_unit(dataset: Dataset, value: float, parameter: Parameter) -> str:

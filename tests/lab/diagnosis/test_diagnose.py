@@ -359,7 +359,7 @@ def test_a_formula_with_an_impossible_sign_is_no_name():
     assert not found.candidates[0].physical
     assert found.verdict == "unknown-effect", found.sentence
     assert found.driver == "load_kg against motion"
-    assert "cannot be it: it would be " in found.sentence
+    assert "cannot be it: its Coulomb friction per load would be -" in found.sentence
 
 
 def test_nothing_to_judge_is_an_error():

@@ -113,13 +113,16 @@ def test_friction_that_rises_over_a_session_is_no_warm_up(excess, possible):
     assert (not why_not_possible(gathered, item)) == possible
 
 
+BEYOND = "load beyond the gap over the load that is known"
+
+
 @pytest.mark.parametrize(
     ("name", "shape", "share", "why", "badge"),
     [
         ("backlash", (0.009,), 1.0, "known from the rig (free play 0.009 rad)", "known from the rig"),
         ("backlash", (0.011,), 1.0, "", ""),
-        ("backlash", (0.011,), 5.0, "it would be 5, allowed 0.3 to 3", "unphysical size"),
-        ("backlash", (0.011,), -0.5, "it would be -0.5, allowed 0.3 to 3", "unphysical sign"),
+        ("backlash", (0.011,), 5.0, f"its {BEYOND} would be 5, allowed 0.3 to 3", "unphysical size"),
+        ("backlash", (0.011,), -0.5, f"its {BEYOND} would be -0.5, allowed 0.3 to 3", "unphysical sign"),
         (
             "elasticity",
             (20.0, 0.7, 0.4),
@@ -134,7 +137,20 @@ def test_friction_that_rises_over_a_session_is_no_warm_up(excess, possible):
             "pre-sliding distance 0.0002 rad is the least that it can be",
             "limit of the scan",
         ),
-        ("pre_sliding", (2e-3,), -1.0, "it would be -1 N m, allowed 0 or more", "unphysical sign"),
+        (
+            "pre_sliding",
+            (2e-3,),
+            -1.0,
+            "its friction that comes up over a distance would be -1 N m, allowed 0 or more",
+            "unphysical sign",
+        ),
+        (
+            "viscous_temperature",
+            (),
+            1.0,
+            "its viscous friction per kelvin would be 1 N m s/(rad K), allowed 0 or less",
+            "unphysical size",
+        ),
         ("pre_sliding", (2e-3,), 0.01, "it would be under 50% of dry friction", "too small"),
     ],
 )
