@@ -54,9 +54,12 @@ class Arm(Section):
 
 
 class Sensor(Section):
-    """Position sensor on the motor side."""
+    """Position sensor."""
 
-    counts_per_turn: float | None = quantity(None, "1/turn", "Counts per motor turn", gt=0)
+    counts_per_turn: float | None = quantity(None, "1/turn", "Counts per turn of what it turns with", gt=0)
+    at: Literal["motor", "joint"] = Field(
+        "motor", description="What it turns with. Drives count turns of the motor; recordings may be of another sensor"
+    )
 
 
 class Supply(Section):
@@ -90,16 +93,21 @@ class Rig(Section):
     effort: Effort | None = None
 
 
+def sensor_turns(rig: Rig) -> float | None:
+    """Turns of the position sensor for each of the joint; None where the rig leaves out the gear ratio."""
+    return 1.0 if rig.sensor.at == "joint" else rig.gear.ratio
+
+
 def resolution_rad(rig: Rig) -> float:
     """The joint angle of one encoder count [rad].
 
     Raises:
         ConfigurationError: the rig leaves out counts or gear ratio.
     """
-    counts, ratio = rig.sensor.counts_per_turn, rig.gear.ratio
-    if counts is None or ratio is None:
+    counts, turns = rig.sensor.counts_per_turn, sensor_turns(rig)
+    if counts is None or turns is None:
         raise ConfigurationError(
             f"rig '{rig.name}': sensor.counts_per_turn and gear.ratio are needed to tell motion from rest; add them to "
             "the rig"
         )
-    return 2.0 * pi / (counts * ratio)
+    return 2.0 * pi / (counts * turns)

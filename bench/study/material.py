@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.config.rig import Rig
+from bench.config.rig import Rig, sensor_turns
 from bench.json_types import Values
 from bench.store import Store
 from bench.store.records import ModelRow, Trial
@@ -152,6 +152,7 @@ def facts_of(rig: Rig) -> Facts:
         arm_inertia_kg_m2=rig.arm.inertia_kg_m2,
         arm_moment_n_m=_arm_moment_n_m(rig),
         supply_is_nominal=rig.supply.is_nominal or None,
+        sensor_at_joint=rig.sensor.at == "joint",
         position_count=_position_count_rad(rig),
         effort=rig.effort.quantity if rig.effort else None,
     )
@@ -165,8 +166,8 @@ def _back_emf_v_s_rad(rig: Rig) -> float | None:
 
 def _position_count_rad(rig: Rig) -> float | None:
     """What one count of the sensor is at the joint; None of a linear joint, or where the rig does not tell."""
-    counts, ratio = rig.sensor.counts_per_turn, rig.gear.ratio
-    return None if counts is None or ratio is None or rig.joint == "linear" else 2.0 * np.pi / (counts * ratio)
+    counts, turns = rig.sensor.counts_per_turn, sensor_turns(rig)
+    return None if counts is None or turns is None or rig.joint == "linear" else 2.0 * np.pi / (counts * turns)
 
 
 def _arm_moment_n_m(rig: Rig) -> float | None:

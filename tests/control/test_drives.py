@@ -90,6 +90,11 @@ def test_a_real_drive_needs_to_know_the_gear():
         make_equipment(configured(ROBOCLAW, gear={"backlash_rad": 0.01}))
 
 
+def test_a_real_drive_counts_turns_of_its_motor():
+    with pytest.raises(ConfigurationError, match=r'sensor.at is "joint"; a real drive counts turns of its motor'):
+        make_equipment(configured(ROBOCLAW, sensor={"counts_per_turn": 4096, "at": "joint"}))
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [

@@ -72,8 +72,13 @@ def joint_scale(settings: RealDriveSettings, rig: Rig) -> JointScale:
     """The joint as a drive has to know it.
 
     Raises:
-        ConfigurationError: the rig leaves out the encoder's counts or the gear ratio.
+        ConfigurationError: the rig leaves out the encoder's counts or the gear ratio, or tells of one at the joint.
     """
+    if rig.sensor.at != "motor":
+        raise ConfigurationError(
+            f"rig '{rig.name}': sensor.at is \"{rig.sensor.at}\"; a real drive counts turns of its motor: "
+            "leave sensor.at out, and give the counts of a motor turn"
+        )
     if rig.sensor.counts_per_turn is None or rig.gear.ratio is None:
         raise ConfigurationError(
             f"rig '{rig.name}': a real drive needs sensor.counts_per_turn and gear.ratio to turn counts into joint "

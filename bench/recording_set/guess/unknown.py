@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from bench.config.rig import Rig
+from bench.config.rig import Rig, sensor_turns
 from bench.recording_set.container import open_container
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.guess.guess import NOTHING, Guess, Known, guess_mapping
@@ -40,7 +40,7 @@ def guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Gues
     with open_container(*paths) as container:
         lists_trials = container.has(TRIALS_FILE)
     if known.counts_per_turn is None and own is not None and own.sensor.counts_per_turn is not None:
-        known = replace(known, counts_per_turn=own.sensor.counts_per_turn * (own.gear.ratio or 1.0))
+        known = replace(known, counts_per_turn=own.sensor.counts_per_turn * (sensor_turns(own) or 1.0))
     if own is not None and own.gear.ratio is not None:
         known = replace(known, gear_ratio=own.gear.ratio)
     sheets, renamed, notes = read_sheets(paths)

@@ -33,6 +33,7 @@ class Facts:
         arm_inertia_kg_m2: of the arm without load, about the axis.
         arm_moment_n_m: weight of the arm without load, at 90 degrees; None where nobody told.
         supply_is_nominal: True where the supply voltage of the recordings is a number that nobody measured; else None.
+        sensor_at_joint: the position sensor turns with the joint, not with the motor.
         position_count: what the position sensor resolves at the joint, in the position's unit; None where nobody told.
         effort: the quantity that the models predict; None takes the best that every trial has.
     """
@@ -48,8 +49,14 @@ class Facts:
     arm_inertia_kg_m2: float | None = None
     arm_moment_n_m: float | None = None
     supply_is_nominal: bool | None = None
+    sensor_at_joint: bool = False
     position_count: float | None = None
     effort: EffortQuantity | None = None
+
+    @property
+    def sensor_turns(self) -> float | None:
+        """Turns of the position sensor for each of the joint; None where nobody told."""
+        return 1.0 if self.sensor_at_joint else self.gear_ratio
 
     @property
     def position_unit(self) -> Literal["rad", "m"]:

@@ -28,12 +28,17 @@ BLOCK_S = 2.0  # rows closer than this are not independent
 FEWEST_ROWS = 20  # of a trial that is judged by itself
 UNTOLD = {
     "gear_ratio": "needs the gear ratio, which the rig does not tell; put [gear] ratio into rig.toml",
+    "sensor_turns": (
+        "needs the turns of the position sensor, which the rig does not tell; put [gear] ratio, or [sensor] at = "
+        '"joint", into rig.toml'
+    ),
     "supply_is_nominal": (
         "cannot hide behind a supply voltage that is measured; if nobody measured it, put [supply] is_nominal = true "
         "into rig.toml"
     ),
 }
 """Facts that effects need -> what is to be said where they are not told."""
+UNTOLD_FACT = "needs {}, which the rig does not tell"  # of effects that others bring
 
 
 @dataclass(frozen=True, slots=True)
@@ -407,7 +412,7 @@ class Dataset:
             )
         for fact in effect.facts:
             if getattr(self.facts, fact) is None:
-                raise NotApplicableError(f"{effect.name} {UNTOLD[fact]}")
+                raise NotApplicableError(f"{effect.name} {UNTOLD.get(fact, UNTOLD_FACT.format(fact))}")
         for channel in effect.channels:
             if not all(channel in trial.signals.recording.channels for trial in self.trials):
                 raise NotApplicableError(f"{effect.name} needs channel {channel} in every trial; record it")

@@ -8,9 +8,9 @@ from compensator.lab.recordings.recording import FloatArray
 
 
 def shapes(motion: Motion) -> list[Shape]:
-    """Once and twice a turn of the motor, which carries the encoder."""
-    ratio = motion.facts.gear_ratio or 1.0
-    return [(ratio,), (2.0 * ratio,)]
+    """Once and twice a turn of what carries the encoder: the motor, or the joint."""
+    turns = motion.facts.sensor_turns or 1.0
+    return [(turns,), (2.0 * turns,)]
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
@@ -59,7 +59,7 @@ EFFECT = Effect(
     shapes=shapes,
     shape_names=("encoder turns per joint turn",),
     confused_with=("cogging",),
-    facts=("gear_ratio",),
+    facts=("sensor_turns",),
     pipeline=True,
     builds_on="inertia",
     discrepancy=discrepancy,
