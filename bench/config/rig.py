@@ -57,8 +57,8 @@ class Sensor(Section):
     """Position sensor."""
 
     counts_per_turn: float | None = quantity(None, "1/turn", "Counts per turn of what it turns with", gt=0)
-    at: Literal["motor", "joint"] = Field(
-        "motor", description="What it turns with. Drives count turns of the motor; recordings may be of another sensor"
+    at: Literal["motor", "joint"] | None = Field(
+        None, description="What it turns with; left out: the motor. That of a real drive does"
     )
 
 

@@ -74,9 +74,9 @@ def joint_scale(settings: RealDriveSettings, rig: Rig) -> JointScale:
     Raises:
         ConfigurationError: the rig leaves out the encoder's counts or the gear ratio, or tells of one at the joint.
     """
-    if rig.sensor.at != "motor":
+    if rig.sensor.at == "joint":
         raise ConfigurationError(
-            f"rig '{rig.name}': sensor.at is \"{rig.sensor.at}\"; a real drive counts turns of its motor: "
+            f"rig '{rig.name}': sensor.at is \"joint\"; a real drive counts turns of its motor: "
             "leave sensor.at out, and give the counts of a motor turn"
         )
     if rig.sensor.counts_per_turn is None or rig.gear.ratio is None:

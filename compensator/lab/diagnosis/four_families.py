@@ -71,13 +71,14 @@ class FourFamilies:
     def _goes_before(self, one: Answer, named: Fit, first: Answer) -> bool:
         """Whether a name goes before another answer: before a curve, unless that predicts other trials better for sure.
 
-        Before another name, where it does so itself, near reversals too if either is judged there. A delay lowers many
-        errors a little: what goes by the rate of the effort needs more evidence, too.
+        Before another name, where it does so itself, near reversals too unless both are judged in steady sliding; of a
+        name from starts from rest no row in motion tells. A delay lowers many errors a little: what goes by the rate of
+        the effort needs more evidence, too.
         """
-        rows: MotionRows = "moving" if self.memory is one or self.memory is first else "sliding"
+        rows: MotionRows = "sliding" if one is self.chain and first is self.steady else "moving"
         if first.verdict == "missing":
             late = one.candidates[0].effect.driver == "effort_rate"
-            enough = not late or one.evidence > first.evidence
+            enough = first is not self.rest and (not late or one.evidence > first.evidence)
             return enough and first.explained is not None and _predicts_better(named, first.explained, rows)
         curve = with_curve(self.gathered.fit, first.driver)
         return curve is None or not _predicts_better(curve, named, rows)

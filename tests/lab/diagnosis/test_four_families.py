@@ -48,6 +48,9 @@ UNSEEN = replace(named("rate_dependent_breakaway"), explained=None)  # in motion
         (CURVE, BACKLASH, None, NOTHING, {("curve", "backlash"): "moving"}, CURVE),
         (CURVE, NOTHING, DWELL, NOTHING, {}, DWELL),
         (CURVE, NOTHING, UNSEEN, NOTHING, {}, CURVE),
+        (NOTHING, NOTHING, DWELL, LATER, {("effort_filter", "dwell_strengthening"): "sliding"}, DWELL),
+        (NOTHING, NOTHING, DWELL, LATER, {("effort_filter", "dwell_strengthening"): "moving"}, DWELL),
+        (COGGING, NOTHING, DWELL, NOTHING, {("dwell_strengthening", "cogging"): "moving"}, DWELL),
         (NOTHING, NOTHING, UNSEEN, ENCODER, {("encoder_eccentricity", "rate_dependent_breakaway"): "sliding"}, UNSEEN),
     ],
 )
