@@ -164,6 +164,18 @@ def test_what_was_written_as_a_recording_set_is_read_as_that_and_not_guessed(tmp
     assert next(one.why for one in columns if one.column == "event") == "events: they are kept"
 
 
+@pytest.mark.parametrize(
+    ("told", "counts"), [({"counts_per_turn": 100.0}, 5000.0), ({"counts_per_turn": 5000.0, "at": "joint"}, 5000.0)]
+)
+def test_counts_are_of_the_joint_wherever_the_sensor_turns(tmp_path: Path, told: dict, counts: float) -> None:
+    time_s = np.arange(400) * 0.01
+    path = tmp_path / "log.csv"
+    table = np.column_stack([time_s, np.round(800.0 * np.sin(time_s)), np.cos(time_s)])
+    np.savetxt(path, table, delimiter=",", header="time_s,encoder_counts,current_a", comments="")
+    rig = Rig.model_validate({"name": "mine", "gear": {"ratio": 50.0}, "sensor": told})
+    assert guess_of([path], rig, Known({}))[0].mapping.counts_per_turn == counts
+
+
 @pytest.mark.parametrize("name", ["\x0e\x01time" * 3, "q" * 5000])
 def test_a_name_that_damaged_bytes_spell_is_not_repeated_whole(name: str) -> None:
     with pytest.raises(RecordingSetError, match=r"a\.mat: has a name of \d+ characters .* save it again") as caught:

@@ -83,6 +83,21 @@ def test_what_shows_near_reversals_for_sure_and_cannot_be_its_formula_is_none_of
     assert (f"joint elasticity, cannot be it: {impossible}" in answer.sentence) == answer.remains
 
 
+def test_in_steady_sliding_what_cannot_be_its_formula_is_left_to_free_curves(monkeypatch):
+    """As a filter of the measuring chain that would have to be a small part of the effort."""
+    fit = fit_model(make_dataset(recordings(SPRUNG, seed=4), FACTS, Processing()), default_effects(FACTS))
+    gathered = with_noise(gather(fit))
+    assert gathered.noise is not None
+    sure = {"gain": Gain(0.3, 0.2, 0.4), "impossible": "it cannot be"}
+    monkeypatch.setattr(
+        families, "examine", lambda *given: [replace(one, **sure) for one in examination.examine(*given)]
+    )
+    monkeypatch.setattr(families, "is_within_bounds", lambda *_: False)
+    blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
+    answer = answer_of(fit, gathered, screen_against_noise(gathered.bases, blocks, gathered.noise), None)
+    assert answer.verdict == "nothing"
+
+
 @pytest.mark.parametrize(("gain", "left", "said"), [(0.1, True, True), (0.1, False, False), (0.5, True, False)])
 def test_a_name_that_explains_the_smaller_part_and_leaves_more_than_noise_says_so(
     monkeypatch, twisted, gain, left, said
