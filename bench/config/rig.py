@@ -67,7 +67,9 @@ class Supply(Section):
 
     voltage_v: float | None = quantity(None, "V", "Supply voltage", gt=0)
     is_nominal: bool | None = Field(
-        None, description="True: nobody measures the supply, and recordings hold this number whatever the load does"
+        None,
+        description="True: nobody measures the supply, and recordings hold this number whatever the load does. "
+        "Left out: so it is where the supply of every trial keeps to the last digit what it was",
     )
 
 

@@ -151,7 +151,7 @@ def facts_of(rig: Rig) -> Facts:
         arm_m=rig.arm.length_m,
         arm_inertia_kg_m2=rig.arm.inertia_kg_m2,
         arm_moment_n_m=_arm_moment_n_m(rig),
-        supply_is_nominal=rig.supply.is_nominal or None,
+        supply_is_nominal=rig.supply.is_nominal,
         sensor_at_joint=rig.sensor.at == "joint",
         position_count=_position_count_rad(rig),
         effort=rig.effort.quantity if rig.effort else None,

@@ -4,7 +4,7 @@ Positions drift by half steps, speeds are kicked by Heun's rule in between (Stra
 2006, section II.5): second order, and without drift of the energy where nothing is lost.
 """
 
-from math import cos, sin, tanh
+from math import copysign, cos, sin, tanh
 from typing import NamedTuple
 
 from sim_backend.second_plant.compiled import compiled
@@ -12,6 +12,7 @@ from sim_backend.second_plant.friction import flow_n_m
 from sim_backend.second_plant.physics import GRAVITY_M_S2, Physics
 
 CABLE_DAMPING, TIP_DAMPING = 0.05, 0.03  # of critical
+SETTLING = 20  # passes to where the spring carries the weight: the twist is small
 
 
 class Places(NamedTuple):
@@ -66,6 +67,19 @@ def load_n_m(p: Physics, at: Places, speeds: Speeds) -> float:
         rate = p.tip_rad_s
         torque += p.tip_kg_m2 * (rate * rate * (at.arm - at.tip) + 2.0 * TIP_DAMPING * rate * (speeds.arm - speeds.tip))
     return torque
+
+
+@compiled
+def resting_at(p: Physics, rotor_rad: float) -> Places:
+    """Places at rest: the arm hangs on the spring, on one side of the gap, behind a rotor that is held."""
+    at = Places(rotor_rad, rotor_rad, rotor_rad, 0.0)
+    if p.stiffness_n_m_rad > 0.0:
+        for _ in range(SETTLING):
+            load = load_n_m(p, at, Speeds(0.0, 0.0, 0.0, 0.0))
+            flank = copysign(0.5 * p.gap_rad, load) if load != 0.0 else 0.0
+            arm = rotor_rad - load / p.stiffness_n_m_rad - flank
+            at = Places(rotor_rad, arm, arm, 0.0)
+    return at
 
 
 @compiled

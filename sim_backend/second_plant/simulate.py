@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sim_backend.second_plant.compiled import SOURCES, compiled, compiled_and_kept
 from sim_backend.second_plant.contact import friction_n_m, moment_of, note_step, resting
 from sim_backend.second_plant.controller import Control, Loop, asked, encoder, measured
-from sim_backend.second_plant.motion import Places, Speeds, drifted, kicked
+from sim_backend.second_plant.motion import Places, Speeds, drifted, kicked, resting_at
 from sim_backend.second_plant.motor import motor_n_m, power_stage, sensed, winding_ohm
 from sim_backend.second_plant.physics import Physics
 
@@ -57,7 +57,7 @@ def run(p: Physics, control: Control, plan: Plan) -> Traces:
 def _run(p: Physics, control: Control, plan: Plan, traces: FloatArray) -> None:
     step_s = TICK_S / STEPS
     start = plan.target_rad[0]
-    at, speeds = Places(start, start, start, 0.0), Speeds(0.0, 0.0, 0.0, 0.0)
+    at, speeds = resting_at(p, start), Speeds(0.0, 0.0, 0.0, 0.0)
     interpolation = (p.interpolation_rad, p.interpolation_order, p.pole_pairs)
     reading = encoder(p.turns, control.count_rad, start, p.eccentricity_rad, interpolation)
     # the joint is held at the start, so the integral begins at what holds the weight

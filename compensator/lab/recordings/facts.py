@@ -32,7 +32,8 @@ class Facts:
         arm_m: axis to the tip load [m], where the trial's conditions do not tell.
         arm_inertia_kg_m2: of the arm without load, about the axis.
         arm_moment_n_m: weight of the arm without load, at 90 degrees; None where nobody told.
-        supply_is_nominal: True where the supply voltage of the recordings is a number that nobody measured; else None.
+        supply_is_nominal: whether the supply voltage of the recordings is a number that nobody measured; None where
+            the owner does not say, and before the recordings were seen.
         sensor_at_joint: the position sensor turns with the joint, not with the motor.
         position_count: what the position sensor resolves at the joint, in the position's unit; None where nobody told.
         effort: the quantity that the models predict; None takes the best that every trial has.

@@ -41,7 +41,7 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
         raise UnusableDataError("no recordings: choose at least one trial")
     _check_conditions(recordings)
     effort = choose_effort(recordings, facts)
-    facts = replace(facts, effort=effort.quantity)
+    facts = replace(facts, effort=effort.quantity, supply_is_nominal=_supply_is_nominal(recordings, facts))
     check_channels(recordings, effort, facts)
     cutoff = processing.cutoff_hz or choose_cutoff_hz(recordings, effort, facts)
     signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
@@ -72,6 +72,17 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
             f"{FEWEST_ROWS} are needed: {WANTED_MOTION}"
         )
     return dataset
+
+
+def _supply_is_nominal(recordings: Sequence[Recording], facts: Facts) -> bool | None:
+    """What the owner says; else True where the supply keeps to the last digit what it was in every trial.
+
+    A reading of a supply under load changes at least in its last digit. None where no trial has one.
+    """
+    readings = [one.channels["supply_v"] for one in recordings if "supply_v" in one.channels]
+    if facts.supply_is_nominal is not None or not readings:
+        return facts.supply_is_nominal
+    return all(len(np.unique(values[np.isfinite(values)])) <= 1 for values in readings)
 
 
 def more_trials(dataset: Dataset, recordings: Sequence[Recording]) -> Dataset:

@@ -33,8 +33,8 @@ UNTOLD = {
         '"joint", into rig.toml'
     ),
     "supply_is_nominal": (
-        "cannot hide behind a supply voltage that is measured; if nobody measured it, put [supply] is_nominal = true "
-        "into rig.toml"
+        "cannot hide behind a supply voltage that is measured, as one that changes is; if nobody measured it, put "
+        "[supply] is_nominal = true into rig.toml"
     ),
 }
 """Facts that effects need -> what is to be said where they are not told."""
@@ -411,7 +411,7 @@ class Dataset:
                 f"{self.scales.position_span / (2.0 * np.pi):.0f} turns; record motion that comes back"
             )
         for fact in effect.facts:
-            if getattr(self.facts, fact) is None:
+            if not getattr(self.facts, fact):
                 raise NotApplicableError(f"{effect.name} {UNTOLD.get(fact, UNTOLD_FACT.format(fact))}")
         for channel in effect.channels:
             if not all(channel in trial.signals.recording.channels for trial in self.trials):

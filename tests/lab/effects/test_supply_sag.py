@@ -57,8 +57,25 @@ def test_the_duty_behind_an_estimated_current_holds_the_back_emf(trials):
     assert found.classes[0][0] == "supply_sag"
 
 
-def test_where_the_supply_is_measured_it_cannot_be_missing(trials):
-    assert "cannot hide behind a supply voltage that is measured" in diagnosed(trials, FACTS).left_out["supply_sag"]
+def test_a_supply_that_never_changes_is_no_reading_of_it(trials):
+    found = diagnosed(trials, FACTS)
+    assert found.verdict == "missing"
+    assert "supply_sag" in found.classes[0]
+
+
+def read(one: Recording, step_v: float) -> Recording:
+    """The supply as an instrument of that resolution reads it, once in a hundred samples one step lower."""
+    supply_v = np.full(len(one), NOMINAL_V)
+    supply_v[::100] -= step_v
+    return replace(one, channels={**one.channels, "supply_v": supply_v})
+
+
+@pytest.mark.parametrize(("told", "step_v"), [(None, 0.01), (False, 0.0)])
+def test_where_the_supply_is_measured_it_cannot_be_missing(trials, told, step_v):
+    facts = replace(FACTS, supply_is_nominal=told)
+    dataset = make_dataset([read(sagging(one, SOURCE_OHM), step_v) for one in trials], facts, Processing())
+    found = diagnose(fit_model(dataset, default_effects(facts)))
+    assert "cannot hide behind a supply voltage that is measured" in found.left_out["supply_sag"]
 
 
 def test_a_stiff_supply_is_no_finding(trials):
