@@ -46,12 +46,13 @@ def ramp_trial(
     random: np.random.Generator,
     noise: float = 5e-4,
     load_kg: float = 0.0,
+    ways: Sequence[float] = (1.0, -1.0),
 ) -> tuple[Recording, list[Ramp]]:
-    """Rest, ramp until the joint lets go, a stroke; forwards, then back."""
+    """Rest, ramp until the joint lets go, a stroke; first forwards, then, without other ways, back."""
     inertia = INERTIA * (1.0 + load_kg)
     torque, speed, made = [np.zeros(int(0.5 * RATE_HZ))], [np.zeros(int(0.5 * RATE_HZ))], []
-    for direction in (1.0, -1.0):
-        before = dwell_s + (0.5 if direction > 0.0 else 0.0)
+    for direction in ways:
+        before = dwell_s + (0.0 if made else 0.5)
         level = rise_s = 0.0
         for _ in range(20):  # friction depends on the rest, which ends when the ramp reaches it
             level = static(before + rise_s, rate)

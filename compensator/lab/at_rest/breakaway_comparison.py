@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import stdtrit
 
-from compensator.lab.at_rest.breakaway_regression import LAG, BreakawayFit, fit_breakaway, held_out_breakaway
+from compensator.lab.at_rest.breakaway_regression import BACK, LAG, BreakawayFit, fit_breakaway, held_out_breakaway
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.effects.effect import Effect, Parameter, shape_parameters
@@ -16,6 +16,10 @@ from compensator.lab.model.linear import solve
 from compensator.lab.recordings.recording import FloatArray
 
 FEWEST_STARTS = 12  # fewer do not carry a regression
+NOTES = {
+    BACK: "of the contacts: they are still bent the way the joint came",
+    LAG: "of the measurement: a start is seen a little late",
+}
 
 
 @dataclass(frozen=True)
@@ -96,7 +100,7 @@ def _shape_parameters(effect: Effect | None) -> list[Parameter]:
 def _note(name: str, kept: bool) -> str:
     if not kept:
         return "these starts cannot tell it apart from the parameters before it"
-    return "of the measurement: a start is seen a little late" if name == LAG else ""
+    return NOTES.get(name, "")
 
 
 def _half_widths(fit: BreakawayFit) -> FloatArray:

@@ -4,6 +4,10 @@ Static friction is a number of its own here, and so is every effect's share: wha
 not the same. What the effort gains until a motion is fast enough to be seen is a column of its own: a body that lets go
 under an effort that grows at a rate r takes a time (2 J v / r)^(1/2) to the speed v, and the effort grows by
 (2 J v r)^(1/2) meanwhile. A heavier arm is seen later, which is no friction of its weight.
+
+Where the joint turns back, its contacts are still bent the way that it came, and come to their whole friction one after
+the other (generalized Maxwell slip: Lampaert, Al-Bender, Swevers 2003): such starts are seen at less. What turns back
+rests for a short time, as a rule, and dwell would be taken for it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,6 +24,7 @@ from compensator.lab.model.validation import FEWEST_TRIALS
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 LAG = "onset_lag"  # what stands for seeing the motion late
+BACK = "turned_back"  # what starts back the way the joint came have less
 NORMAL = 1.4826  # standard deviation over median absolute deviation
 OUTLYING, ALIEN = 2.5, 6.0  # standard deviations, from which a start counts less (Huber 1964), and not at all
 ROUNDS = 5  # of learning how much starts scatter beyond what their effort does
@@ -27,7 +32,7 @@ ROUNDS = 5  # of learning how much starts scatter beyond what their effort does
 
 @dataclass(frozen=True)
 class Share:
-    """One fitted share of the breakaway effort: of an effect, or of the late onset (`LAG`)."""
+    """One fitted share of the breakaway effort: of an effect, of turning back, or of the late onset."""
 
     name: str
     shape: Shape
@@ -104,8 +109,9 @@ def _fit(rows: BreakawayRows, effects: Sequence[Effect], shapes: Mapping[str, Sh
     ]
     blocks = [rows.columns(share, shape) for _, shape, _, share in named]
     parts: list[tuple[str, Shape, tuple[Parameter, ...]]] = [one[:3] for one in named]
+    parts.append((BACK, (), (Parameter("more where the joint turns back", "{effort}", -np.inf, 0.0),)))
     parts.append((LAG, (), (Parameter("gained until motion is seen, over that until the slow speed", "1", 0.0),)))
-    blocks.append(lag_column(rows))
+    blocks += [back_column(rows), lag_column(rows)]
     columns = np.nan_to_num(np.concatenate(blocks, axis=1))
     parameters = [parameter for _, _, own in parts for parameter in own]
     bounds = Bounds(np.array([p.low for p in parameters]), np.array([p.high for p in parameters]))
@@ -118,6 +124,11 @@ def _fit(rows: BreakawayRows, effects: Sequence[Effect], shapes: Mapping[str, Sh
         for part, a, b in zip(parts, ends[:-1], ends[1:], strict=True)
     )
     return BreakawayFit(rows, shares, columns, bounds, weight, scatter)
+
+
+def back_column(rows: BreakawayRows) -> FloatArray:
+    """The direction of starts where the joint turns back, 0 of others, shape (E, 1)."""
+    return (rows.direction * rows.turns_back)[:, None]
 
 
 def lag_column(rows: BreakawayRows) -> FloatArray:

@@ -26,7 +26,7 @@ class BreakawayRows:
         time_s, position: of each row, since the start of its trial; shape (E,).
         effort, effort_sd: at the start of motion, and how well it is known.
         held: part of it that the model's load takes at rest there: gravity and springs, as sliding tells them.
-        direction, rest_s, rate: as in `breakaways.Start`.
+        direction, rest_s, rate, turns_back: as in `breakaways.Start`.
         trial_index: in the dataset.
         unit: independent unit: a trial, or two starts in a row of a trial that holds more.
         training: rows of training trials.
@@ -41,6 +41,7 @@ class BreakawayRows:
     direction: FloatArray
     rest_s: FloatArray
     rate: FloatArray
+    turns_back: BoolArray
     held: FloatArray
     trial_index: IntArray
     unit: IntArray
@@ -111,6 +112,7 @@ def breakaway_rows(fit: Fit) -> BreakawayRows | None:
         direction=np.array([start.direction for start in events]),
         rest_s=np.array([start.rest_s for start in events]),
         rate=np.array([start.rate for start in events]),
+        turns_back=np.array([start.turns_back for start in events]),
         held=np.concatenate([onset.motion.load_effort for onset in onsets]),
         trial_index=trial_index,
         unit=_units(trial_index),

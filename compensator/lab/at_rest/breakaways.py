@@ -36,6 +36,7 @@ class Start:
         effort_sd: standard deviation of that, by the scatter about the line, or by how far the effort jumped.
         rate: of the effort, along the motion [effort/s].
         rest_s: how long the joint had been at rest by then.
+        turns_back: whether the joint goes back the way it came from.
     """
 
     index: int
@@ -44,6 +45,7 @@ class Start:
     effort_sd: float
     rate: float
     rest_s: float
+    turns_back: bool = False
 
 
 def starts_of(signals: Signals, position: FloatArray, count: float, slow: float) -> list[Start]:
@@ -63,8 +65,16 @@ def starts_of(signals: Signals, position: FloatArray, count: float, slow: float)
         way = position[end : after + 1] - position[end]
         gone = np.flatnonzero(np.abs(way) >= least)
         if (end - begin) * period_s >= REST_S and len(gone) and signals.usable[end]:
-            found.append(_start(signals, begin, end, float(np.sign(way[gone[0]]))))
+            direction = float(np.sign(way[gone[0]]))
+            found.append(_start(signals, begin, end, direction, _came_from(position, begin, least) == direction))
     return [start for start in found if start is not None]
+
+
+def _came_from(position: FloatArray, begin: int, least: float) -> float:
+    """On which side of a rest that begins at a sample the joint was before, 1 or -1; 0 where it was at rest before."""
+    way = position[: begin + 1] - position[begin]
+    far = np.flatnonzero(np.abs(way) >= least)
+    return float(np.sign(way[far[-1]])) if len(far) else 0.0
 
 
 def rests_of(signals: Signals, position: FloatArray, count: float, slow: float) -> list[tuple[int, int]]:
@@ -97,7 +107,7 @@ def _rests(resting: BoolArray, position: FloatArray, least: float) -> list[tuple
     return found
 
 
-def _start(signals: Signals, begin: int, end: int, direction: float) -> Start | None:
+def _start(signals: Signals, begin: int, end: int, direction: float, turns_back: bool) -> Start | None:
     line = _line(signals, begin, end)
     if line is None:
         return None
@@ -105,7 +115,8 @@ def _start(signals: Signals, begin: int, end: int, direction: float) -> Start | 
     jump = _jump(signals, end, count, direction)
     if jump is not None:
         effort, deviation = jump
-    return Start(end, direction, effort, deviation, direction * slope, (end - begin) / signals.rate_hz)
+    rest_s = (end - begin) / signals.rate_hz
+    return Start(end, direction, effort, deviation, direction * slope, rest_s, turns_back)
 
 
 def _line(signals: Signals, begin: int, end: int) -> tuple[float, float, float, int] | None:

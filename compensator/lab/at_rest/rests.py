@@ -5,15 +5,16 @@ p(q, d) the model's effort at speed zero for a motion about to go the way d = 1 
 
     p(q, -1) <= effort <= p(q, 1)
 
-in every rest (Armstrong, Dupont, Canudas de Wit 1994). Half the span is static friction: what sliding tells of it, or,
-where starts from rest tell of more, that. Its middle is gravity, springs and offset, which sliding tells.
+in every rest (Armstrong, Dupont, Canudas de Wit 1994). Half the span is static friction: what sliding tells of it, at
+rest or as slow as any sliding was, or, where starts from rest tell of more, that. A power law of the speed has nothing
+at speed zero, which no sliding shows. Its middle is gravity, springs and offset, which sliding tells.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensator.lab.at_rest.breakaway_regression import LAG, BreakawayFit
+from compensator.lab.at_rest.breakaway_regression import BACK, LAG, BreakawayFit
 from compensator.lab.at_rest.breakaway_rows import at_rest_motion, measured_position
 from compensator.lab.at_rest.breakaways import resolution_of, rests_of
 from compensator.lab.effects.catalogue import effect_named
@@ -104,7 +105,10 @@ def limits_of(fit: Fit, windows: Windows, starts: BreakawayFit | None) -> Limits
         windows: at rest; at least one.
         starts: the same model fitted to its starts from rest; None where there are too few.
     """
-    low, high = (_columns(fit, windows, way) for way in (-1.0, 1.0))
+    low, high = (_columns(fit, windows, way, 0.0) for way in (-1.0, 1.0))
+    low_slow, high_slow = (_columns(fit, windows, way, fit.dataset.scales.slow) for way in (-1.0, 1.0))
+    holds_more = ((high_slow - low_slow - high + low) @ fit.coefficients > 0.0)[:, None]
+    low, high = np.where(holds_more, low_slow, low), np.where(holds_more, high_slow, high)
     middle, half = 0.5 * (high + low) @ fit.coefficients, 0.5 * (high - low) @ fit.coefficients
     if starts is not None:
         half = np.maximum(half, _half_by_starts(fit, windows, starts))
@@ -123,13 +127,14 @@ def extrapolated(fit: Fit) -> float:
     return float(sum(term.coefficients @ np.diff(term.effect.columns(motion, term.shape))[:, 0] for term in static))
 
 
-def _columns(fit: Fit, windows: Windows, way: float) -> FloatArray:
-    """The model's columns at rest, about to move one way, shape (W, K).
+def _columns(fit: Fit, windows: Windows, way: float, speed: float) -> FloatArray:
+    """The model's columns at rest, about to move one way, or moving so at a speed, shape (W, K).
 
     Effects with memory have none there, nor has the measuring chain, which makes something of rates of change only.
     """
     parts = []
-    for _, motion in _motions(fit, windows, way):
+    for _, resting in _motions(fit, windows, way):
+        motion = replace(resting, velocity=way * np.full(len(resting.time_s), speed))
         blocks = [
             term.effect.columns(motion, term.shape)
             if term.effect.rows == "sliding" and not term.effect.pipeline
@@ -143,7 +148,7 @@ def _columns(fit: Fit, windows: Windows, way: float) -> FloatArray:
 
 def _half_by_starts(fit: Fit, windows: Windows, starts: BreakawayFit) -> FloatArray:
     """Static friction after that rest and at that rate, by the breakaway effort, shape (W,)."""
-    shares = [share for share in starts.shares if share.name != LAG]
+    shares = [share for share in starts.shares if share.name not in (BACK, LAG)]
     efforts = []
     for way in (-1.0, 1.0):
         parts = []

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from compensator.lab.at_rest.breakaway_regression import LAG, BreakawayFit, fit_breakaway, lag_column
+from compensator.lab.at_rest.breakaway_regression import LAG, BreakawayFit, back_column, fit_breakaway, lag_column
 from compensator.lab.at_rest.breakaway_rows import BreakawayRows, breakaway_rows, shares_of
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.effects.catalogue import effect_named
@@ -76,7 +76,10 @@ class BreakawaySeparation(Rivalry):
             for effect, _ in shares_of(self._fit.effects)
         ]
         shaped = [_columns(rows, one, shape) for one in self.rivals for shape in one.shapes]
-        stacked = np.nan_to_num(np.concatenate([*model, lag_column(rows), *shaped], axis=1))[chosen] * weight[:, None]
+        stacked = (
+            np.nan_to_num(np.concatenate([*model, back_column(rows), lag_column(rows), *shaped], axis=1))[chosen]
+            * weight[:, None]
+        )
         return Equations(len(stacked), stacked.T @ stacked)
 
     def _deviation(self, rows: BreakawayRows) -> FloatArray:

@@ -1,12 +1,13 @@
 """Breakaway events: found with their effort, rest and rate; named is what static friction depends on."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
-from compensator.lab.at_rest.breakaway_regression import LAG, fit_breakaway, held_out_breakaway, lag_column
+from compensator.lab.at_rest.breakaway_regression import BACK, LAG, fit_breakaway, held_out_breakaway, lag_column
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.breakaways import resolution_of, starts_of
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
@@ -18,7 +19,7 @@ from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.evidence import least_p_value, screen_events
-from tests.lab.ramps import COUNT_RAD, HORIZONTAL, MODEL, STATIC, constant, ramp_fit, ramp_recordings, ramp_trial
+from tests.lab.ramps import COUNT_RAD, HORIZONTAL, MODEL, STATIC, constant, ramp_fit, ramp_recordings, ramp_trial, swing
 
 
 def rising(rest_s: float, _rate: float) -> float:
@@ -95,6 +96,26 @@ def test_a_static_friction_that_depends_on_nothing_lacks_nothing():
     answer, _ = breakaway_answer(fit, breakaway_rows(fit))
     assert answer is not None
     assert answer.verdict == "nothing"
+
+
+def test_what_starts_back_the_way_it_came_after_short_rests_is_no_dwell():
+    random = np.random.default_rng(3)
+
+    def scattered(bent: float) -> Callable[[float, float], float]:
+        """Less after short rests; the first start of a trial has rested half a second more, and does not turn back."""
+        level = STATIC * (1.0 + 0.06 * random.standard_normal())
+        return lambda rest_s, _rate: level if rest_s > 0.7 else bent * level
+
+    made = [swing(f"swing-{hz}", hz, random) for hz in (0.15, 0.3, 0.5, 0.7)]
+    for repeat in range(14):
+        turning = ramp_trial(f"short-{repeat}", 0.3, 0.3, scattered(0.75), random, ways=(1.0, -1.0, 1.0, -1.0))
+        going_on = ramp_trial(f"long-{repeat}", 2.0, 0.3, scattered(1.0), random, ways=(1.0, 1.0, 1.0))
+        made += [turning[0], going_on[0]]
+    fit = fit_model(make_dataset(made, HORIZONTAL, Processing(cutoff_hz=12.0)), MODEL)
+    rows = breakaway_rows(fit)
+    assert rows.rest_s[rows.turns_back].max() < rows.rest_s[~rows.turns_back].min()
+    assert breakaway_answer(fit, rows)[0].verdict == "nothing"
+    assert fit_breakaway(rows, fit.effects).coefficients_of(BACK)[0] == pytest.approx(-0.25 * STATIC, rel=0.2)
 
 
 def test_the_share_that_a_breakaway_model_finds_is_the_static_friction():

@@ -121,6 +121,26 @@ def test_static_friction_below_the_slowest_sliding_is_not_known_without_starts()
     assert compare_at_rest(held_at(friction + 8.0 * rise)).is_evidence
 
 
+@pytest.mark.parametrize(("share", "sticks"), [(0.9, False), (4.0, True)])
+def test_a_power_law_of_the_speed_holds_at_rest_what_it_brakes_at_the_slowest(share, sticks):
+    time_s, power = np.arange(0.0, 8.0, 1.0 / RATE_HZ), 0.3
+    made = [
+        trial(f"swing-{number}", 0.4 * np.sin(2.0 * np.pi * hz * time_s), 0.0, number)
+        for number, hz in enumerate((0.05, 0.3, 0.8, 1.2) * 3)
+    ]
+    made += [trial(f"held-{way}", np.zeros(len(time_s)), 0.0, 9) for way in (1.0, -1.0)]
+    for one in made:
+        velocity = np.gradient(one.channels["position_rad"], time_s)
+        one.channels["torque_n_m"] += COULOMB * (np.abs(velocity) ** power - 1.0) * np.sign(velocity)
+    dataset = make_dataset(made, Facts(), Processing(cutoff_hz=8.0))
+    slowest = COULOMB * dataset.scales.slow**power
+    for way, one in zip((1.0, -1.0), made[-2:], strict=True):
+        one.channels["torque_n_m"] += way * share * slowest
+    dataset = make_dataset(made, Facts(), Processing(cutoff_hz=8.0))
+    fit = fit_model(dataset, ("inertia", "gravity", "offset", "viscous", "viscous_power"))
+    assert compare_at_rest(fit).is_friction == sticks
+
+
 @pytest.mark.parametrize(("efforts", "sticks"), [((1.5, -1.5), False), ((6.0, -6.0), True), ((6.0, 0.0), False)])
 def test_static_friction_beyond_the_models_is_missing_though_sliding_leaves_nothing(efforts, sticks):
     found = diagnose(held_at(*(share * COULOMB for share in efforts)))
