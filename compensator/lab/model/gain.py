@@ -25,8 +25,10 @@ class Gain:
     high: float
 
     def is_unlike(self, before: float, after: float) -> bool:
-        """Whether it is notably not what the errors themselves have, each row counting alike."""
-        return before > 0.0 and abs(self.value - (1.0 - after / before)) > NOTABLE
+        """Whether it is notably not what the errors themselves have, each row counting alike, or they rise."""
+        return before > 0.0 and (
+            abs(self.value - (1.0 - after / before)) > NOTABLE or self.value > 0.0 > before - after
+        )
 
     def in_words(self, before: float, after: float, digits: int = 1) -> str:
         """The gain and its interval, beside relative errors."""
