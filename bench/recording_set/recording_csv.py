@@ -49,19 +49,19 @@ def read_columns(table: Table) -> dict[str, FloatArray | list[str]]:
 
 
 def _text_columns(table: Table) -> list[str]:
-    """Columns that hold text in most rows, and events, which few rows have; any other word is a fault among numbers."""
-    texts = dict.fromkeys(table.header, 0)
-    width, decimal, rows = len(table.header), table.dialect.decimal, 0
+    """Columns in which most of what stands is text, and events; any other word is a fault among numbers."""
+    width, decimal = len(table.header), table.dialect.decimal
+    texts, filled = np.zeros(width), np.zeros(width)
     for chunk in table.chunks():
-        records = [cells for _, cells in chunk.records(width)] if _has_text(chunk, width, decimal) else []
-        rows += len(records) or chunk.text.count("\n")
-        for index, name in enumerate(table.header):
-            texts[name] += sum(not numbers.is_number(cells[index], decimal) for cells in records)
-    return [name for name, count in texts.items() if name == EVENT_COLUMN or count > MOSTLY * rows]
-
-
-def _has_text(chunk: Chunk, width: int, decimal: str) -> bool:
-    return numbers.matrix(chunk.text, width, chunk.delimiter, decimal) is None
+        matrix = numbers.matrix(chunk.text, width, chunk.delimiter, decimal)
+        if matrix is not None:
+            filled += np.isfinite(matrix).sum(axis=0)
+            continue
+        for _, cells in chunk.records(width):
+            filled += [bool(cell.strip()) for cell in cells]
+            texts += [not numbers.is_number(cell, decimal) for cell in cells]
+    mostly = texts > MOSTLY * filled
+    return [name for name, text in zip(table.header, mostly, strict=True) if name == EVENT_COLUMN or text]
 
 
 class _Reader:
