@@ -11,7 +11,7 @@ from bench.cli.bench_session import session_of
 from bench.cli.evaluation.cores import Cluster, Workers, progress
 from bench.cli.lab import diagnosis_tables, study_tables
 from bench.cli.operation.service import DEFAULT_URL, Url
-from bench.cli.output import Json, print_json, say, table, write_whole
+from bench.cli.output import Json, print_json, refuse_taken, say, table, write_whole
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.store import Store
@@ -300,6 +300,7 @@ def report_command(
     """One HTML file to be filed: trials, ladder, model, pictures, diagnosis, what to record next, provenance."""
     from bench.study.report.report import report_html
 
+    refuse_taken(html)  # before the time that a report takes
     session = session_of(context)
     with session.open_store() as store:
         page = report_html(store, study, session.configuration() if suggest else None)
