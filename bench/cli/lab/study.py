@@ -321,13 +321,16 @@ def ladder_command(
         from bench.cli.lab.study_bench import simulate_models
 
         simulate_models(session_of(context), study, quiet=as_json)
+    alone_g = None
     if bench:
         from bench.cli.lab.study_bench import measure_models
 
-        measure_models(session_of(context), study, quiet=as_json)
+        alone_g = measure_models(session_of(context), study, quiet=as_json)
     from bench.study.ladder import ladder
 
     _show(context, as_json, study_tables.ladder, ladder, study)
+    if alone_g is not None and not as_json:
+        say(f"reflected load by the friction curves alone, without a model of the study: error {alone_g:.4g} g")
 
 
 def _show(
