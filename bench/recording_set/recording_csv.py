@@ -1,5 +1,6 @@
 """One trial from its CSV, read in chunks: memory holds the numbers, and the text of one chunk."""
 
+import re
 from array import array
 from itertools import islice
 
@@ -16,7 +17,8 @@ from compensator.lab.recordings.recording import EVENT_COLUMN, Event, FloatArray
 
 MOST_ROWS = 50_000_000
 FEWEST_ROWS = 2
-MOSTLY = 0.5  # of the rows: a column that holds text in so many is one of text
+MOSTLY = 0.5  # of what stands in a column: one that holds so much text is one of text
+GROUPED = re.compile(r"[+-]?\d{1,3}([.,' ]\d{3})+([.,]\d*)?")
 
 
 def read_recording_csv(table: Table, mapping: Mapping) -> tuple[dict[str, FloatArray], list[Event]]:
@@ -117,6 +119,8 @@ class _Reader:
             return numbers.column(cells, self._decimal)
         except numbers.NoNumber as error:
             wanted = "a number in the unit of the column's name, or nothing where it is not known"
+            if GROUPED.fullmatch(error.text.strip()):
+                wanted = "a number without a sign between its thousands; export the file anew without them"
             raise chunk.error(f"found '{error.text[:40]}'; wanted {wanted}", error.index, name) from None
 
     def _error(self, message: str, row: int, column: str) -> RecordingSetError:
