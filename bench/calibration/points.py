@@ -43,10 +43,19 @@ def friction_points(rows: Iterable[Row]) -> dict[float, list[FrictionPoint]]:
         CalibrationError: there is none at all.
     """
     points: dict[float, list[FrictionPoint]] = defaultdict(list)
-    for row in rows:
+    strokes = list(rows)
+    if not strokes:
+        raise CalibrationError(
+            "there are 0 trials of the balanced arm in motion, from which a friction curve is told; name a speed "
+            "sweep, too, or an import of such trials"
+        )
+    for row in strokes:
         points[float(row["load_kg"])] += _points_of(row)
     if not any(points.values()):
-        raise CalibrationError("the sweep has 0 saturated rows; look at what each row gives as its ending")
+        raise CalibrationError(
+            f"0 of {len(strokes)} strokes of the speed sweep came to a steady speed; the results of each trial say "
+            "under 'ending' why"
+        )
     return dict(sorted(points.items()))
 
 

@@ -89,6 +89,8 @@ def text(value: object) -> str:
         return f"{value:.4g}"
     if isinstance(value, datetime):
         return value.astimezone().strftime("%Y-%m-%d %H:%M:%S")
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(text, value))}]"
     return str(value)
 
 

@@ -1,5 +1,6 @@
 """One trial from its CSV, read in chunks: memory holds the numbers, and the text of one chunk."""
 
+import re
 from array import array
 from itertools import islice
 
@@ -16,7 +17,8 @@ from compensator.lab.recordings.recording import EVENT_COLUMN, Event, FloatArray
 
 MOST_ROWS = 50_000_000
 FEWEST_ROWS = 2
-MOSTLY = 0.5  # of the rows: a column that holds text in so many is one of text
+MOSTLY = 0.5  # of what stands in a column: one that holds so much text is one of text
+GROUPED = re.compile(r"[+-]?\d{1,3}([.,' ]\d{3})+([.,]\d*)?")
 
 
 def read_recording_csv(table: Table, mapping: Mapping) -> tuple[dict[str, FloatArray], list[Event]]:
@@ -49,19 +51,19 @@ def read_columns(table: Table) -> dict[str, FloatArray | list[str]]:
 
 
 def _text_columns(table: Table) -> list[str]:
-    """Columns that hold text in most rows, and events, which few rows have; any other word is a fault among numbers."""
-    texts = dict.fromkeys(table.header, 0)
-    width, decimal, rows = len(table.header), table.dialect.decimal, 0
+    """Columns in which most of what stands is text, and events; any other word is a fault among numbers."""
+    width, decimal = len(table.header), table.dialect.decimal
+    texts, filled = np.zeros(width), np.zeros(width)
     for chunk in table.chunks():
-        records = [cells for _, cells in chunk.records(width)] if _has_text(chunk, width, decimal) else []
-        rows += len(records) or chunk.text.count("\n")
-        for index, name in enumerate(table.header):
-            texts[name] += sum(not numbers.is_number(cells[index], decimal) for cells in records)
-    return [name for name, count in texts.items() if name == EVENT_COLUMN or count > MOSTLY * rows]
-
-
-def _has_text(chunk: Chunk, width: int, decimal: str) -> bool:
-    return numbers.matrix(chunk.text, width, chunk.delimiter, decimal) is None
+        matrix = numbers.matrix(chunk.text, width, chunk.delimiter, decimal)
+        if matrix is not None:
+            filled += np.isfinite(matrix).sum(axis=0)
+            continue
+        for _, cells in chunk.records(width):
+            filled += [bool(cell.strip()) for cell in cells]
+            texts += [not numbers.is_number(cell, decimal) for cell in cells]
+    mostly = texts > MOSTLY * filled
+    return [name for name, text in zip(table.header, mostly, strict=True) if name == EVENT_COLUMN or text]
 
 
 class _Reader:
@@ -117,6 +119,8 @@ class _Reader:
             return numbers.column(cells, self._decimal)
         except numbers.NoNumber as error:
             wanted = "a number in the unit of the column's name, or nothing where it is not known"
+            if GROUPED.fullmatch(error.text.strip()):
+                wanted = "a number without a sign between its thousands; export the file anew without them"
             raise chunk.error(f"found '{error.text[:40]}'; wanted {wanted}", error.index, name) from None
 
     def _error(self, message: str, row: int, column: str) -> RecordingSetError:

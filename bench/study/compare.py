@@ -1,5 +1,6 @@
 """Measured against predicted, for the page, the command line and reports."""
 
+from math import isnan
 from typing import Literal
 
 from bench.store import Store
@@ -160,6 +161,8 @@ def _notes(material: Material, found: comparison.Comparison) -> list[str]:
         f"Errors count {int(material.dataset.counted.sum())} rows {rows[material.definition.rows]}, effort and motion "
         f"filtered alike at {material.definition.cutoff_hz:.3g} Hz."
     ]
+    if without := sum(isnan(one.rms) for one in found.trials):
+        notes.append(f"{without} of {len(found.trials)} trials have no such row, and no error of their own.")
     notes += [f"Data: {problem}." for problem in data_problems(found.fit)]
     if material.dataset.crosses_free_play:
         notes.append(

@@ -207,10 +207,11 @@ def _difference(found: Quantity) -> UnitDifference:
 
 def _of_two(found: Sequence[UnitDifference]) -> str:
     beyond = [one.name for one in found if not one.low <= 0.0 <= one.high]
-    seen = f"The 90 % interval of a difference leaves 0 out in {', '.join(beyond)}" if beyond else "No difference shows"
+    seen = f"The units differ in {', '.join(beyond)}" if beyond else "No difference shows"
     return (
-        f"{seen}; each of the {len(found)} intervals holds by itself. How units scatter, and whether one is an "
-        f"outlier, two cannot tell: that takes {FEWEST_UNITS} and better 6."
+        f"{seen}, by the 90 % interval of each difference; each of the {len(found)} intervals holds by itself. How "
+        f"units scatter, and whether one is an outlier, two cannot tell: the one takes {FEWEST_UNITS}, the other 4 "
+        "and better 6."
     )
 
 

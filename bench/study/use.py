@@ -108,14 +108,27 @@ def bench_configurations(
     Raises:
         StudyError: the bench has no calibration, or a model cannot be used online.
     """
-    calibrated = with_friction(store, configuration)
-    if calibrated.friction is None:
-        raise StudyError("this bench has no calibration to begin with; run `friction-bench calibrate run` first")
+    calibrated = by_curves_alone(store, configuration)
     for model in store.models(study_id):
         if kept_of(model).bench is None:
             studied, _ = studied_model(store, study_id, configuration, model.id)
-            friction = calibrated.friction.model_copy(update={"study": studied})
-            yield model.id, calibrated.model_copy(update={"friction": friction})
+            yield model.id, _with_study(calibrated, studied)
+
+
+def by_curves_alone(store: Store, configuration: BenchConfiguration) -> BenchConfiguration:
+    """The bench that compensates by the friction curves of its calibration, without a study's model.
+
+    Raises:
+        StudyError: the bench has no calibration.
+    """
+    return _with_study(with_friction(store, configuration), None)
+
+
+def _with_study(configuration: BenchConfiguration, studied: StudiedModel | None) -> BenchConfiguration:
+    if configuration.friction is None:
+        raise StudyError("this bench has no calibration to begin with; run `friction-bench calibrate run` first")
+    friction = configuration.friction.model_copy(update={"study": studied})
+    return configuration.model_copy(update={"friction": friction})
 
 
 def keep_bench_error(store: Store, model_id: int, experiment_id: int) -> None:

@@ -68,7 +68,9 @@ def test_escape_ends_it_and_the_page_says_why(commissioning, open_page):
     page.keyboard.press("Escape")
     page.get_by_text("Not commissioned: STOP on the page").wait_for()
     assert commissioning.client.get("/commission").json()["state"] == "refused"
-    page.get_by_role("button", name="Begin anew").wait_for()
+    page.get_by_role("button", name="Begin anew").click()
+    page.locator("[data-question=arm_length_m]").wait_for()
+    assert page.locator("#answer").input_value() == "0.25"  # as it was typed before
 
 
 def test_a_simulated_bench_says_what_it_takes(open_page):

@@ -376,6 +376,8 @@ def test_what_is_read_has_a_minus_and_what_is_typed_a_hyphen(call):
 def test_a_channel_has_one_name_on_the_whole_page(call):
     assert call("ui/format", "m.withUnit('current_estimate_a')") == "current from duty [A]"
     assert call("ui/format", "m.withUnit('current_load_a')") == "load current [A]"
+    listed = {"loads_kg": [0, 0.1], "waveforms": ["sweep"], "repeats": 2}
+    assert call("ui/format", f"m.conditions({listed})") == "loads 0 g, 100 g, waveforms sweep, repeats 2"
 
 
 @pytest.mark.parametrize(

@@ -43,6 +43,21 @@ def test_two_models_stand_beside_each_other_and_have_an_address(open_page, studi
     assert page.get_by_label("The second: study").input_value() == str(studies[1])
 
 
+def test_trials_of_two_units_that_were_run_alike_stand_in_one_row(service, open_page, studies):
+    headers = {"Content-Type": "application/zip"}
+    made = service.client.post("/recording-sets?name=unit", content=recording_set_zip(), headers=headers).json()
+    unit = service.client.post("/studies", json={"name": "unit", "experiment_ids": [made["experiment_id"]]}).json()
+    page = open_page(f"#compare/{studies[0]}./{unit['study_id']}.", width=1440)
+    page.get_by_text("They share no trial, so each is judged on its own trials.").wait_for()
+    rows = page.locator("[aria-label='Error of each trial'] tbody tr")
+    assert rows.count() == len(unit["trials"])
+    assert all("not used" not in row and row.count("%") == 2 for row in rows.all_inner_texts())
+    offered = page.locator(".study-plots option").all_inner_texts()
+    assert {one.rsplit(", ", 1)[1] for one in offered} == {"first", "second"}
+    assert len(set(offered)) == 2 * len(unit["trials"])
+    service.client.request("DELETE", f"/studies/{unit['study_id']}", params={"reason": "test"})
+
+
 def test_a_change_is_undone_from_any_step_and_done_again(service, open_page, studies, changed):
     page = open_page(f"#study/{studies[0]}/result", width=1440)
     page.get_by_role("button", name="Undo + viscous asymmetry").click()
@@ -108,6 +123,13 @@ def test_units_of_one_kind_stand_beside_each_other(service, open_page, studies):
     two = page.locator("[aria-label='What differs between the two units'] tbody tr")
     assert two.count() == len(told["differences"])
     assert page.locator("[aria-label='What units have in common']").count() == 0
+    assert page.locator("tr.chosen").count() == 0
+    told["differences"][1] |= {"low": 0.1, "high": 0.3}
+    intercept(page, "**/units?*", lambda route: route.fulfill(json=told))
+    compare.click()
+    name = told["differences"][1]["name"].replace("_", " ")
+    page.locator("tr.chosen").get_by_text(name, exact=True).wait_for()
+    page.unroute("**/units?*")
     units.get_by_label(f"{studies[1]}: ").check()
     compare.click()
     page.get_by_text("None of the 3 units is shown to be an outlier.").wait_for()

@@ -79,7 +79,7 @@ def test_unlike_experiments_are_not_mixed(store, configuration):
 
 def test_trials_without_motion_are_refused(store):
     before = len(store.calibrations.find())
-    with pytest.raises(CalibrationError, match="0 saturated rows"):
+    with pytest.raises(CalibrationError, match="0 trials of the balanced arm"):
         calibration.calibrate(store, [2])
     with pytest.raises(CalibrationError, match="there are 0 experiments"):
         calibration.calibrate(store, [])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from bench.cli.output import complain, say, table
+from bench.cli.output import complain, say, table, text
 
 COMMAND = "friction-bench import " + " ".join(f"long-name-{number}.csv" for number in range(20)) + " --mapping m.toml"
 HOSTILE = "trial \x1b]0;owned\x07\x1b[2J of [bold]x[/bold]\r\x9b1m"
@@ -26,3 +26,7 @@ def test_a_command_is_printed_on_one_line(capsys, monkeypatch, terminal):
     first, *others = capsys.readouterr().out.splitlines()
     assert first.strip() == f"then: {COMMAND}"
     assert len(others) == (7 if terminal else 3)
+
+
+def test_numbers_in_lists_are_as_short_as_others():
+    assert text([[1.0, 0.9149999999999999], [-1, None], []]) == "[[1, 0.915], [-1, -], []]"

@@ -10,10 +10,11 @@ from bench.cli.lab import diagnosis_tables, study_tables
 from bench.cli.lab.diagnosis_tables import next_step
 from bench.study.diagnosis import search as search_module
 from bench.study.models.diagnosis import ProvisionalTerm
+from bench.study.report import report as report_module
 from tests.service.recorded_joint import recording_set_zip
 
 
-def test_from_trials_to_an_error_that_falls(command, tmp_path):
+def test_from_trials_to_an_error_that_falls(command, tmp_path, monkeypatch):
     (tmp_path / "known joint.zip").write_bytes(recording_set_zip())
     assert command("import", "known joint.zip").exit_code == 0
     made = command("study", "new", "arm", "--experiment", 1, "--hold-out", "amplitude_rad=0.9", "--json")
@@ -41,8 +42,10 @@ def test_from_trials_to_an_error_that_falls(command, tmp_path):
     report = command("study", "report", study, "--html", "study.html", "--no-suggest")
     assert report.exit_code == 0, report.output
     assert "What the models leave" in (tmp_path / "study.html").read_text(encoding="utf-8")
-    again = command("study", "report", study, "--html", "study.html", "--no-suggest")
-    assert again.exit_code != 0
+    with monkeypatch.context() as patch:
+        patch.setattr(report_module, "report_html", pytest.fail)  # a place that is taken is refused before the work
+        again = command("study", "report", study, "--html", "study.html", "--no-suggest")
+    assert again.exit_code == 3
     assert "is there already" in again.stderr
     others = [
         json.loads(command("study", "new", "unit", "--experiment", 1, "--json").stdout)["study_id"] for _ in range(2)

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 from binascii import crc_hqx
 from collections.abc import Iterator
 from pathlib import Path
@@ -125,6 +126,23 @@ def test_load_is_hung_and_nonsense_is_refused(device: DeviceProcess) -> None:
         device.side.ask("dance")
     with pytest.raises(ParameterError, match="unexpected keyword argument 'kg'"):
         device.side.ask("hang", kg=1)
+
+
+def test_what_it_prints_is_a_file_of_its_drive(tmp_path: Path) -> None:
+    file = tmp_path / "drive.toml"
+    with file.open("w") as out:
+        words = [sys.executable, "-m", "bench.cli", "simulate-device", "roboclaw", "--link", str(tmp_path / "port")]
+        running = subprocess.Popen(words, stdout=out, stderr=subprocess.PIPE, text=True)
+    try:
+        assert running.stderr is not None
+        while "Ctrl-C ends it" not in (line := running.stderr.readline()):
+            assert line, "it ended by itself"
+        drive = tomllib.loads(file.read_text())["drive"]
+    finally:
+        running.kill()
+        running.wait()
+        running.stderr.close()
+    assert (drive["kind"], drive["port"]) == ("roboclaw", str(tmp_path / "port"))
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

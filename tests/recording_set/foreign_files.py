@@ -135,10 +135,15 @@ def _text_files() -> dict[str, Foreign]:
         "a current that is of one sign": Foreign("a.csv", _text({
             "time_s": TIME_S, "position_rad": POSITION_RAD, "current": 3.0 + CURRENT_A, "duty": 0.1 * CURRENT_A}),
             known=Known(read_said(["current=current[A]"])), truth={"current_a": 3.0 + CURRENT_A}),
+        "remarks in a column, none made": Foreign("a.csv", rows(
+            {**GERMAN, "Bemerkung": [""] * ROWS}, delimiter=";", decimal=",").encode()),
+        "remarks in a column, one in the first row": Foreign("a.csv", rows(
+            {**GERMAN, "Bemerkung": ["Start", *[""] * (ROWS - 2), "Ende"]}, delimiter=";", decimal=",").encode()),
         "missing values": Foreign("a.csv", PLAIN.replace(b"\n0.05,", b"\n0.05,", 1) + b"4,NA,NA\n4.01,,NaN\n",
                                   truth={"time_s": np.append(TIME_S, [4.0, 4.01])}),
         "scientific": Foreign("a.csv", _text(COLUMNS, form="%.8E")),
-        "thousands": Foreign("a.csv", PLAIN + b'"1,004.5",0,0\n', asks="found '1,004.5'"),
+        "thousands": Foreign("a.csv", PLAIN + b'"1,004.5",0,0\n',
+                             asks="found '1,004.5'; wanted .* between its thousands"),
         "short last line": Foreign("a.csv", PLAIN + b"4.0,0.1", asks="found 2 cells; wanted 3"),
         "text in a number": Foreign("a.csv", PLAIN.replace(b"\n0.5,", b"\n0.5,OVERRUN", 1),
                                     asks="line 52, column 'position_rad': found 'OVERRUN"),

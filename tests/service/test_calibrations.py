@@ -49,4 +49,4 @@ def test_changing_needs_the_token_and_what_is_wrong_is_named(service, made):
     assert service.client.post("/calibrations/9999/use").status_code == 404
     refused = service.client.post("/calibrations", json={"experiment_ids": made["experiment_ids"][1:]})
     assert refused.status_code == 422
-    assert "0 saturated rows" in refused.json()["detail"]
+    assert "0 trials of the balanced arm" in refused.json()["detail"]

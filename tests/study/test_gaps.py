@@ -63,3 +63,13 @@ def test_the_gaps_of_a_trial_are_told_from_its_times(store, number):
     ((from_s, to_s),) = store.time_gaps(trial_id)
     assert from_s < GAP_S[0] + 0.01
     assert to_s > GAP_S[1] - 0.01
+
+
+def test_trials_without_a_row_that_counts_are_told(store):
+    *made, last = recordings(HIDDEN, QUICK, plans(loads_kg=(0.0, 0.2), repeats=1), seed=3)
+    still = {"position_rad": np.zeros_like(last.channels["position_rad"])}
+    made.append(replace(last, channels={**last.channels, **still}))
+    experiment_id = import_recording_set(store, RecordingSet("set", RIG, made), "still")
+    found = compare(store, create_study(store, "still", [experiment_id]).study_id)
+    assert [np.isnan(one.rms) for one in found.trials] == [False] * (len(made) - 1) + [True]
+    assert found.notes[1] == f"1 of {len(made)} trials have no such row, and no error of their own."

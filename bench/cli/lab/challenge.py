@@ -153,8 +153,9 @@ def _print_score(score: "Score") -> None:
         if names:  # as the catalogue calls them; a mechanism outside of it has its own name only
             called = (" or ".join(accepted(one)) or one if one in ACCEPTED else one for one in names)
             say(f"{word}: {', '.join(called)}{note}")
-    whole = "All that these recordings can tell" if score.untold or score.faint else "All of it"
-    say(f"{whole}, and nothing else." if score.perfect else "Not all of it, or more than it.")
+    if score.perfect:
+        whole = "All that these recordings can tell" if score.untold or score.faint else "All of it"
+        say(f"{whole}, and nothing else.")
 
 
 def _print_ranges() -> None:

@@ -11,7 +11,7 @@ from bench.cli.bench_session import session_of
 from bench.cli.evaluation.cores import Cluster, Workers, progress
 from bench.cli.lab import diagnosis_tables, study_tables
 from bench.cli.operation.service import DEFAULT_URL, Url
-from bench.cli.output import Json, print_json, say, table, write_whole
+from bench.cli.output import Json, print_json, refuse_taken, say, table, write_whole
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.store import Store
@@ -300,6 +300,7 @@ def report_command(
     """One HTML file to be filed: trials, ladder, model, pictures, diagnosis, what to record next, provenance."""
     from bench.study.report.report import report_html
 
+    refuse_taken(html)  # before the time that a report takes
     session = session_of(context)
     with session.open_store() as store:
         page = report_html(store, study, session.configuration() if suggest else None)
@@ -320,13 +321,16 @@ def ladder_command(
         from bench.cli.lab.study_bench import simulate_models
 
         simulate_models(session_of(context), study, quiet=as_json)
+    alone_g = None
     if bench:
         from bench.cli.lab.study_bench import measure_models
 
-        measure_models(session_of(context), study, quiet=as_json)
+        alone_g = measure_models(session_of(context), study, quiet=as_json)
     from bench.study.ladder import ladder
 
     _show(context, as_json, study_tables.ladder, ladder, study)
+    if alone_g is not None and not as_json:
+        say(f"reflected load by the friction curves alone, without a model of the study: error {alone_g:.4g} g")
 
 
 def _show(

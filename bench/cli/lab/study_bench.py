@@ -36,25 +36,38 @@ def simulate_models(session: BenchSession, study_id: int, quiet: bool) -> None:
                 say(f"model {model_id} simulated")
 
 
-def measure_models(session: BenchSession, study_id: int, quiet: bool) -> None:
-    """Move the joint once with each model of a study that has not been tried on the bench, and keep the error."""
-    from bench.study.use import bench_configurations, keep_bench_error
+def measure_models(session: BenchSession, study_id: int, quiet: bool) -> float | None:
+    """Move the joint once with each model of a study that has not been tried on the bench, and keep the error.
 
+    Returns:
+        The error of the reflected load without any of them, by the friction curves alone [g]; None where none was.
+    """
+    from bench.study.use import bench_configurations, by_curves_alone, keep_bench_error
+
+    tried = False
     with session.open_store() as store:
         for model_id, configuration in bench_configurations(store, study_id, session.configuration()):
+            tried = True
             if not quiet:
                 say(f"model {model_id} on the bench")
-            experiment_id = _carry_out(store, configuration, quiet)
+            experiment_id = _carry_out(store, configuration, quiet, "reflected load by a study's model")
             keep_bench_error(store, model_id, experiment_id)
+        if not tried:
+            return None
+        if not quiet:
+            say("the friction curves alone on the bench")
+        configuration = by_curves_alone(store, session.configuration())
+        experiment_id = _carry_out(store, configuration, quiet, "reflected load by the friction curves alone")
+        return 1000.0 * float(store.experiment(experiment_id).results["rms_error_kg"])
 
 
-def _carry_out(store: "Store", configuration: "BenchConfiguration", quiet: bool) -> int:
+def _carry_out(store: "Store", configuration: "BenchConfiguration", quiet: bool, note: str) -> int:
     from bench.runs.runner import Runner
 
     runner = Runner(configuration, store)
     try:
         with stopping_on_signals(runner) as received:
-            experiment_id = runner.start(KIND, {}, note="reflected load by a study's model")
+            experiment_id = runner.start(KIND, {}, note=note)
             watch(runner, quiet)
     finally:
         runner.close()

@@ -148,10 +148,18 @@ def units(found: "UnitComparison") -> None:
 def _two_units(found: "UnitComparison") -> None:
     first, second = (one.name for one in found.units)
     rows = [
-        (one.name, one.first, one.second, one.difference, _interval(one.low, one.high), one.unit)
+        (
+            one.name,
+            one.first,
+            one.second,
+            one.difference,
+            _interval(one.low, one.high),
+            one.unit,
+            "differs" if one.low > 0.0 or one.high < 0.0 else "",
+        )
         for one in found.differences
     ]
-    columns = ["parameter", f"{first}#", f"{second}#", "difference#", "90 %#", "unit"]
+    columns = ["parameter", f"{first}#", f"{second}#", "difference#", "90 %#", "unit", ""]
     table(f"{second} beside {first}", columns, rows)
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 import typer
 from typer.core import TyperGroup
 
-from bench.cli.output import say
+from bench.cli.output import remark, say
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.config.drives.kind import DriveKind
@@ -96,11 +96,12 @@ def _serve(simulated: "Simulated", json: bool) -> None:
         if json:
             typer.echo(json_text.dumps({"port": device.path, "side_channel": device.side_channel, "drive": drive}))
         else:
-            say(f"{simulated.title}, simulated, on {device.path}; side channel on {device.side_channel}.")
-            say("For bench.toml:\n\n[drive]")
+            remark(f"{simulated.title}, simulated, on {device.path}; side channel on {device.side_channel}.")
+            remark("For bench.toml:\n")
+            say("[drive]")
             for key, value in drive.items():
                 say(f"{key} = {json_text.dumps(value)}")  # a TOML value, too, where it is flat
-            say("\nCtrl-C ends it.")
+            remark("\nCtrl-C ends it.")
         device.wait(stop)
 
 

@@ -70,15 +70,18 @@ def _found(lines: tuple[str, ...], delimiter: str | None, decimal: str | None) -
         for point in (".", ",") if decimal is None else (decimal,):
             if point == sign and not any('"' in line for line in lines):
                 continue
-            block = _block(rows, point)
-            if block is None:
-                continue
-            first, width, share, count = block
-            named = _header(rows, first, width, point)
-            # more columns of numbers under a header of as many names are no accident
-            found = (share * width * (2.0 if named[1] else 1.0), count)
-            if found > score:
-                best, score = Dialect(sign, point, named[0], named[1], first + 1), found
+            for read in (_without_end(rows), rows):
+                block = _block(read, point)
+                if block is None:
+                    continue
+                first, width, share, count = block
+                named = _header(read, first, width, point)
+                if read is rows and not (named[1] and named[0][-1]):
+                    continue  # an empty last cell is a column only under a name
+                # more columns of numbers under a header of as many names are no accident
+                found = (share * width * (2.0 if named[1] else 1.0), count)
+                if found > score:
+                    best, score = Dialect(sign, point, named[0], named[1], first + 1), found
     return None if best is None else replace(best, rate_hz=_rate(lines[: best.first_line]))
 
 
@@ -116,10 +119,14 @@ def _cells(line: str, delimiter: str) -> list[str]:
     if delimiter == BLANKS:
         return line.split()
     try:
-        cells = next(csv.reader([line], delimiter=delimiter), [])
+        return next(csv.reader([line], delimiter=delimiter), [])
     except csv.Error:
         return []
-    return cells[:-1] if len(cells) > 1 and not cells[-1].strip() else cells
+
+
+def _without_end(rows: Sequence[list[str]]) -> list[list[str]]:
+    """The rows without an empty last cell: a sign at the end of each line."""
+    return [cells[:-1] if len(cells) > 1 and not cells[-1].strip() else cells for cells in rows]
 
 
 def _block(rows: Sequence[list[str]], decimal: str) -> tuple[int, int, float, int] | None:
@@ -147,7 +154,7 @@ def _is_data(cells: Sequence[str], decimal: str) -> bool:
 def _is_preface(cells: Sequence[str], alike: Sequence[list[str]], decimal: str) -> bool:
     """Whether a line has text where most others have values: "Interval,0.0005" of an instrument, not a row."""
     for cell, column in zip(cells, zip(*alike, strict=True), strict=True):
-        values = sum(_is_value(one, decimal) for one in column)
+        values = sum(_is_value(one, decimal) for one in column if one.strip())
         if not _is_value(cell, decimal) and values > 0.5 * len(alike):
             return True
     return False

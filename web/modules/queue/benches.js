@@ -3,7 +3,7 @@
 
 import { get } from "../app/api.js";
 import { h, panel, replace, table } from "../ui/dom.js";
-import { conditions } from "../ui/format.js";
+import { conditions, duration } from "../ui/format.js";
 
 const PERIOD_MS = 5000;
 
@@ -13,7 +13,7 @@ const COLUMNS = [
   { title: "Lease", cell: ({ lease }) => lease || "free" },
   { title: "Queue", cell: ({ queue }) => queue || "empty" },
   { title: "To hand in", number: true, cell: ({ waiting }) => waiting },
-  { title: "Heard of", cell: ({ silent_s }) => `${Math.round(silent_s)} s ago` },
+  { title: "Heard of", cell: ({ silent_s }) => `${duration(silent_s)} ago` },
 ];
 
 const ITEMS = [

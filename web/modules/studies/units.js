@@ -33,7 +33,7 @@ function unitTables({ differences, parameters, sentence, notes, units }) {
   const judged = odd ? "problem" : "good";
   return [h("div", { class: differences.length ? "soft" : judged, role: "status" }, spoken(sentence)),
     differences.length ? tableOfTwo(differences, units) : tablesOfMany(parameters),
-    table("Units", [
+    headed("Units", [
       { title: "Study", cell: (unit) => unit.name },
       { title: "Trials", number: true, cell: (unit) => unit.trials },
       { title: "Error", number: true, cell: (unit) => percent(unit.error) },
@@ -41,20 +41,25 @@ function unitTables({ differences, parameters, sentence, notes, units }) {
     notes.map((note) => h("p", { class: "soft" }, spoken(note)))];
 }
 
+function headed(title, columns, rows) {
+  return [h("h3", {}, title), table(title, columns, rows)];
+}
+
 function tableOfTwo(differences, [first, second]) {
-  return table("What differs between the two units", [
+  const rows = differences.map((one) => ({ ...one, chosen: one.low > 0 || one.high < 0 }));
+  return headed("What differs between the two units", [
     { title: "Parameter", cell: (one) => spoken(one.name) },
     { title: `${first.study_id}: ${first.name}`, number: true, cell: (one) => number(one.first, 3) },
     { title: `${second.study_id}: ${second.name}`, number: true, cell: (one) => number(one.second, 3) },
     { title: "Difference (90 %)", number: true, cell: (one) => within(one.difference, one.low, one.high) },
     { title: "Unit", cell: (one) => unitText(one.unit) },
-  ], differences);
+  ], rows);
 }
 
 function tablesOfMany(parameters) {
   const rows = parameters.flatMap((one) => one.values.map((value) => ({ one, value, chosen: value.outlier })));
   return [
-    table("What units have in common", [
+    headed("What units have in common", [
       { title: "Parameter", cell: (one) => spoken(one.name) },
       { title: "Mean (95 %)", number: true, cell: (one) => within(one.mean, one.mean_low, one.mean_high) },
       { title: "Scatter between units (95 %)", number: true, cell: (one) => within(one.scatter, one.scatter_low, one.scatter_high) },
@@ -63,7 +68,7 @@ function tablesOfMany(parameters) {
       { title: "Units differ", cell: (one) => (one.differs ? "yes" : "not shown") },
       { title: "p", number: true, cell: (one) => chanceCell(one.p_value) },
     ], parameters),
-    table("Each unit beside the others", [
+    headed("Each unit beside the others", [
       { title: "Parameter", cell: ({ one }) => spoken(one.name) },
       { title: "Study", cell: ({ value }) => h("a", { href: `#study/${value.study_id}` }, value.name) },
       { title: "Value (95 %)", number: true, cell: ({ value }) => within(value.value, value.low, value.high) },

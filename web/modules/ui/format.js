@@ -55,6 +55,7 @@ export function fixed(value, places) {
 
 // a value whose name tells its unit, in the units that are shown
 export function quantity(name, value) {
+  if (Array.isArray(value)) return value.map((one) => quantity(name, one)).join(", ");
   return typeof value === "number" ? withShownUnit(value, unitOf(name)) : number(value);
 }
 

@@ -86,14 +86,17 @@ function shared(first, second) {
 function merged(first, second) {
   const known = new Set(second.series.map((one) => one.trial_id));
   const blank = (one) => ({ ...one, predicted: one.predicted.map(() => null), residual: one.residual.map(() => null) });
-  return [...second.series, ...first.series.filter((one) => !known.has(one.trial_id)).map(blank)];
+  const all = [...second.series, ...first.series.filter((one) => !known.has(one.trial_id)).map(blank)];
+  if (shared(first, second).length) return all;
+  // trials of two units have the same names
+  return all.map((one) => ({ ...one, name: `${one.name}, ${SIDES[known.has(one.trial_id) ? 1 : 0]}` }));
 }
 
 function trialTable(first, second) {
-  const all = [...new Map([...first.trials, ...second.trials].map((one) => [one.trial_id, one])).values()];
-  const of = (model) => (one) => model.trials.find((other) => other.trial_id === one.trial_id);
+  const key = keyOf(first, second);
+  const all = [...new Map([...first.trials, ...second.trials].map((one) => [key(one), one])).values()];
   const cell = (model) => (one) => {
-    const found = of(model)(one);
+    const found = model.trials.find((other) => key(other) === key(one));
     return found ? `${percent(found.relative)} (${found.role.replace("_", " ")})` : "not used";
   };
   return table("Error of each trial", [
@@ -101,6 +104,13 @@ function trialTable(first, second) {
     { title: "First", number: true, cell: cell(first) },
     { title: "Second", number: true, cell: cell(second) },
   ], all);
+}
+
+// which trials stand in one row: one and the same; of studies that share none, such as of two units, what was run alike
+export function keyOf(first, second) {
+  const alike = ({ name, conditions: { session_s, ...rest } }) => JSON.stringify([name, rest]);
+  const isTold = ({ trials }) => new Set(trials.map(alike)).size === trials.length;
+  return !shared(first, second).length && isTold(first) && isTold(second) ? alike : (one) => one.trial_id;
 }
 
 function parameterTable(first, second) {
