@@ -60,9 +60,8 @@ def _set_current(table: ObjectTable, settings: CanopenSettings, found: Capabilit
             if before is not None and 0 < before <= wanted:
                 table.note(item, Need.REQUIRED, _PURPOSE, True, f"{before}, as it was: lower than {wanted} already")
                 continue
-            why = str(error).removeprefix(f"drive '{settings.device}': ")
             raise DriveConfigurationError(
-                settings.device, f"current_limit_a is {limit_a:g} A: {why}; choose one that the drive takes"
+                settings.device, f"current_limit_a is {limit_a:g} A: {error.message}; choose one that the drive takes"
             ) from error
 
 

@@ -204,7 +204,7 @@ class Arrangement:
         try:
             configure(self._access, self._device, pdo, slot)
         except DriveConfigurationError as error:
-            self._refusals.append(str(error).removeprefix(f"drive '{self._device}': "))
+            self._refusals.append(error.message)
             return None
         self._used.append(pdo)
         return pdo

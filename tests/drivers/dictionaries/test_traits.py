@@ -61,6 +61,14 @@ def test_a_drive_that_does_not_tell_its_rated_current_asks_for_it(name, without,
             assert (Mode.CURRENT in found.modes) is takes
 
 
+def test_a_drive_that_brakes_for_long_is_not_said_to_have_its_cause_still(tmp_path) -> None:
+    sheet = Trait(without=(0x6007,), default={(0x6085, 0): 200}).write(tmp_path, "slow-ramp")
+    result = attempt(sheet)
+    assert result.moved
+    assert "cannot be cleared: 0x8130" in result.refusal
+    assert "the drive brakes still: its ramps may be slow, 0x6085 or 0x6084" in result.refusal
+
+
 def test_a_drive_that_holds_back_its_current_says_so_before_anything_moves(tmp_path) -> None:
     sheet = Trait(default={(0x6072, 0): 100}).write(tmp_path, "held-back")
     with device(sheet) as running:
