@@ -5,6 +5,7 @@ from struct import pack
 import pytest
 
 from sim_backend.devices.canopen.objects.data_sheet import read_data_sheet
+from sim_backend.devices.canopen.serve import data_sheet
 from sim_backend.errors import ParameterError
 
 HEAD = """[DeviceInfo]
@@ -99,3 +100,11 @@ def test_a_value_that_is_no_number_is_not_told(write) -> None:
 def test_what_is_no_data_sheet_is_refused_with_the_place(write, text, words) -> None:
     with pytest.raises(ParameterError, match=f"drive.eds: {words}"):
         read_data_sheet(write(text))
+
+
+def test_the_sheet_of_a_simulated_drive_has_its_mappings_in_hexadecimal(write) -> None:
+    text = data_sheet("epos4")
+    assert "DefaultValue=0x60400010\n" in text  # some readers put 0 for any other form
+    assert "VendorNumber=251\n" in text
+    assert "BaudRate_10=0\nBaudRate_20=0\n" in text
+    assert read_data_sheet(write(text)).default(0x1600, 1) == 0x60400010

@@ -46,7 +46,7 @@ class Trait:
     def write(self, folder: Path, name: str) -> Path:
         """Write the data sheet; return its path."""
         path = folder / f"{name}.eds"
-        path.write_text(eds_text(self._objects(), "CiA 402 drive of a test", 0x12345), encoding="ascii")
+        path.write_text(eds_text(self._objects(), "CiA 402 drive of a test"), encoding="ascii")
         return path
 
     def _objects(self) -> list[Object]:
