@@ -15,6 +15,8 @@ from drivers.wraps import Turns
 
 FIRMWARE = Item(0, 2, "firmware version")
 MODEL_NUMBER = Item(3, 2, "model number")
+LOWEST = Item(9, 2, "lowest position")
+HIGHEST = Item(11, 2, "highest position")
 OPERATING_MODE = Item(33, 1, "operating mode")
 TORQUE_ENABLE = Item(40, 1, "torque enable")
 GOAL_POSITION = Item(42, 6, "goal position, time and speed")
