@@ -11,11 +11,14 @@ class DriveError(Exception):
     Args:
         device: name of the drive as configured ("sim", "/dev/ttyACM0", "can0 node 5").
         message: what was found, what is allowed, the unit, and what to do next.
+
+    Attributes:
+        device, message: as given, for a message that this one becomes part of.
     """
 
     def __init__(self, device: str, message: str) -> None:
         super().__init__(f"drive '{device}': {message}")
-        self.device = device
+        self.device, self.message = device, message
 
 
 class DriveConfigurationError(DriveError, ValueError):

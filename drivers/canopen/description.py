@@ -69,6 +69,8 @@ def _notes(session: Session) -> Iterator[str]:
     yield f"Watchdog: {session.guard.words}."
     if not session.guard.is_told:
         yield "Its dictionary does not tell that reaction: it is tried each time before the first motion."
+    if session.current_limit:
+        yield session.current_limit
     if session.left in (State.ENABLED, State.QUICK_STOP):
         yield f"A host before left the drive in state '{session.left.value}'. It was switched off."
     if isnan(session.found.scale.velocity_unit_rad_s):

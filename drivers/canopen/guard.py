@@ -194,7 +194,7 @@ class Guard:
             self.disarm()
         except DriveError as error:
             self.armed = False
-            return _without_name(error.__cause__ or error, self._settings.device)
+            return (error.__cause__ if isinstance(error.__cause__, DriveError) else error).message
         return ""
 
     def _accept_own(self, refusals: list[str]) -> None:
@@ -231,11 +231,6 @@ class Guard:
         if before is None:
             return ramp != 0  # CiA 402: by default it brakes on the ramp, then switches off
         return self._table.try_set(QUICK_STOP_OPTION, wanted, "quick stop") or (ramp != 0 and before in _ENDS_IN_OFF)
-
-
-def _without_name(error: BaseException, device: str) -> str:
-    """A message that becomes part of another of the same drive."""
-    return str(error).removeprefix(f"drive '{device}': ")
 
 
 def heartbeat_ms(settings: CanopenSettings) -> int:

@@ -43,10 +43,13 @@ def identify(table: ObjectTable, access: ObjectAccess, settings: CanopenSettings
     Raises:
         DriveConfigurationError: it is no CiA 402 drive, or another one than the settings name.
     """
-    profile = table.read(DEVICE_TYPE, _PURPOSE) & 0xFFFF
+    device_type = table.read(DEVICE_TYPE, _PURPOSE)
+    profile = device_type & 0xFFFF
     if profile != _DRIVE_PROFILE:
         raise DriveConfigurationError(
-            settings.device, f"device profile is {profile}; {_DRIVE_PROFILE}, a drive, is wanted. Correct node_id"
+            settings.device,
+            f"device profile is {profile}; {_DRIVE_PROFILE}, a drive, is wanted (0x1000 is 0x{device_type:X}). Correct "
+            "node_id where another node is meant; a controller without that profile cannot be driven over CANopen",
         )
     found = Identity(
         vendor_id=table.ask(VENDOR, _PURPOSE) or 0,

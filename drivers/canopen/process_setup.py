@@ -47,7 +47,7 @@ def set_interpolation(table: ObjectTable, period_s: float) -> None:
 def set_up_pdos(
     table: ObjectTable, access: ObjectAccess, settings: CanopenSettings, found: Capabilities
 ) -> ProcessData:
-    """Configure SYNC and the PDOs.
+    """Configure SYNC and the PDOs. A mode whose target finds no room is taken from those that were found.
 
     Raises:
         DriveConfigurationError: SYNC is elsewhere, or a PDO that is required has no room.
@@ -62,6 +62,9 @@ def set_up_pdos(
     data = arrangement.arrange(_targets(table, found), offsets, [state, motion])
     for pdo in (*data.demands.values(), *data.tpdos):
         table.note(pdo, Need.REQUIRED, "process data", True, ", ".join(map(str, pdo.layout.entries)))
+    for mode in [mode for mode, code in found.modes.items() if TARGETS[code] not in data.demands]:
+        why = f"the drive maps {TARGETS[found.modes.pop(mode)]} with the controlword into no RPDO"
+        table.note(f"mode '{mode.value}'", Need.WISHED, "mode", False, why)
     for item in data.lost:
         table.note(item, Need.WISHED, "process data", False, "no room in a TPDO: not measured")
     return data

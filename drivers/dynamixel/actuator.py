@@ -15,7 +15,7 @@ from drivers.joint import JointScale
 from drivers.serial_latency import latency_note
 from drivers.servos.actuator import ServoActuator
 from drivers.servos.bus import ServoBus
-from drivers.servos.frames import Item
+from drivers.servos.frames import Item, error_names
 from drivers.wraps import DriveClock
 
 _MODES = {
@@ -99,7 +99,7 @@ class DynamixelActuator(ServoActuator):
     def reading(self, data: bytes, asked_s: float) -> Reading:
         """The piece in SI."""
         pwm, current, velocity, position, is_on, error, watchdog, tick, supply, temperature = table.LAYOUT.unpack(data)
-        fault = table.hardware_errors(error)
+        fault = error_names(error, table.ERRORS)
         if watchdog == table.WATCHDOG_TRIPPED:
             fault = fault or _WATCHDOG_FAULT
         return Reading(

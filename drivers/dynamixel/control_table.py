@@ -42,9 +42,4 @@ GATHERED = (
 )
 LAYOUT = Struct("<hhiiBBBHHB")
 
-_ERRORS = {0: "input voltage", 2: "overheating", 3: "motor encoder", 4: "electrical shock", 5: "overload"}
-
-
-def hardware_errors(word: int) -> str:
-    """The hardware errors by the names of the manual; "" for none."""
-    return ", ".join(f"{_ERRORS.get(bit, f'bit {bit}')} error" for bit in range(8) if word & 1 << bit)
+ERRORS = {0: "input voltage", 2: "overheating", 3: "motor encoder", 4: "electrical shock", 5: "overload"}

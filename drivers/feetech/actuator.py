@@ -51,6 +51,7 @@ class FeetechActuator(ServoActuator):
         self.identity = self._identify(joint)
         self.clear_fault()
         self._limit_torque()
+        self._ends = self._read_ends()
         self.notes = (_NO_WATCHDOG, *latency_note(settings.port, lambda: self._word(memory.TORQUE_ENABLE)))
 
     @property
@@ -74,17 +75,17 @@ class FeetechActuator(ServoActuator):
         """Where a demand goes, and its bytes.
 
         Raises:
-            DriveConfigurationError: a position outside the servo's one turn.
+            DriveConfigurationError: a position outside the servo's one turn, or its own limits.
         """
         if mode is Mode.DUTY:
             word = with_sign(round(value * memory.DUTY_FULL), memory.DUTY_SIGN)
             return memory.GOAL_DUTY.address, word.to_bytes(2, "little")
-        counts = round(value)
-        if not 0 <= counts < memory.COUNTS_PER_TURN:
+        counts, (low, high) = round(value), self._ends
+        if not low <= counts <= high:
             raise DriveConfigurationError(
                 self._settings.device,
-                f"a position of {counts} counts was demanded; in position mode a servo knows one turn, 0 .. "
-                f"{memory.COUNTS_PER_TURN - 1}. Use duty, or change drive.zero_rad",
+                f"a position of {counts} counts was demanded; in position mode a servo knows one turn, this one "
+                f"{low} .. {high} of it. Use duty, change drive.zero_rad, or the limits in its memory (9, 11)",
             )
         return memory.GOAL_POSITION.address, counts.to_bytes(2, "little") + bytes(4)
 
@@ -129,6 +130,11 @@ class FeetechActuator(ServoActuator):
                 self._settings.device,
                 f"its operating mode reads back as {found}, set was {wanted} ({mode.value} mode): it was refused",
             )
+
+    def _read_ends(self) -> tuple[int, int]:
+        """The positions to which the servo goes: it would stop there, and tell nobody. 0 and 0 are no limits."""
+        low, high = self._word(memory.LOWEST), self._word(memory.HIGHEST)
+        return (low, high) if low < high else (0, memory.COUNTS_PER_TURN - 1)
 
     def _limit_torque(self) -> None:
         """Raises `DriveConfigurationError` where it does not read back."""

@@ -10,11 +10,13 @@ from struct import Struct
 
 from drivers.actuator.reading import Reading
 from drivers.feetech.frames import signed
-from drivers.servos.frames import Item
+from drivers.servos.frames import Item, error_names
 from drivers.wraps import Turns
 
 FIRMWARE = Item(0, 2, "firmware version")
 MODEL_NUMBER = Item(3, 2, "model number")
+LOWEST = Item(9, 2, "lowest position")
+HIGHEST = Item(11, 2, "highest position")
 OPERATING_MODE = Item(33, 1, "operating mode")
 TORQUE_ENABLE = Item(40, 1, "torque enable")
 GOAL_POSITION = Item(42, 6, "goal position, time and speed")
@@ -38,11 +40,6 @@ MODELS = {777: "STS3215", 2825: "STS3250", 11272: "SM8512BL"}
 _ERRORS = {0: "voltage", 1: "position sensor", 2: "overheating", 3: "over-current", 5: "overload"}
 
 
-def servo_errors(word: int) -> str:
-    """What the status says, by the names of the manual; "" for nothing."""
-    return ", ".join(f"{_ERRORS.get(bit, f'bit {bit}')} error" for bit in range(8) if word & 1 << bit)
-
-
 def reading_of(data: bytes, asked_s: float, turns: Turns) -> Reading:
     """The piece `PIECE` in SI.
 
@@ -57,5 +54,5 @@ def reading_of(data: bytes, asked_s: float, turns: Turns) -> Reading:
         asked_s, turns.follow(position, counts_s, asked_s), counts_s,
         signed(load, LOAD_SIGN) / DUTY_FULL,
         signed(current, CURRENT_SIGN) * CURRENT_A, nan,
-        supply * SUPPLY_V, temperature, bool(is_on), servo_errors(status),
+        supply * SUPPLY_V, temperature, bool(is_on), error_names(status, _ERRORS),
     )  # fmt: skip

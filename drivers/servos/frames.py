@@ -13,6 +13,11 @@ class Item(NamedTuple):
     name: str
 
 
+def error_names(word: int, names: dict[int, str]) -> str:
+    """The bits of an error by the names of the manual; "" for none."""
+    return ", ".join(f"{names.get(bit, f'bit {bit}')} error" for bit in range(8) if word & 1 << bit)
+
+
 class StatusPacket(NamedTuple):
     """What a servo answers.
 

@@ -266,7 +266,7 @@ def test_node_without_master_goes_where_it_was_told(behavior: int, state: bytes)
 def test_eds_is_read_by_canopen(family, tmp_path) -> None:
     host = CanHost(family)
     file = tmp_path / "drive.eds"
-    file.write_text(eds_text(host.device.dictionary.objects.values(), family.device_name, 0))
+    file.write_text(eds_text(host.device.dictionary.objects.values(), family.device_name))
     book = canopen.import_od(str(file), NODE)
     assert set(book) == set(host.device.dictionary.objects)
     assert book[0x1800][1].default == 0x185

@@ -9,7 +9,7 @@ from drivers.canopen.cia301.objects import DataType, DriveObject
 from drivers.canopen.cia301.pdo import INVALID, Pdo, communication, mapping_entry, same
 from drivers.errors import DriveConfigurationError
 
-MOST_PDOS: Final = 4  # of each kind that a drive has enabled by default (CiA 402)
+MOST_PDOS: Final = 8  # of each kind that CiA 402 has a default for
 _INHIBIT_TIME, _EVENT_TIMER = 3, 5  # subindices of a TPDO's communication record
 
 
@@ -37,8 +37,8 @@ def read_slots(access: ObjectAccess, transmit: bool) -> list[Slot]:
 
 
 def _read_slot(access: ObjectAccess, number: int, transmit: bool) -> Slot | None:
-    cob_id = access.read_if_present(communication(number, transmit, 1, DataType.U32, "COB-ID"))
-    count = access.read_if_present(mapping_entry(number, transmit, 0))
+    cob_id = access.read_if_present(_cob_id(number, transmit))
+    count = None if cob_id is None else access.read_if_present(mapping_entry(number, transmit, 0))
     if cob_id is None or count is None:
         return None
     words = (access.read_if_present(mapping_entry(number, transmit, place)) for place in range(1, count + 1))
@@ -55,8 +55,14 @@ def configure(access: ObjectAccess, device: str, pdo: Pdo, slot: Slot) -> None:
     if all(same(item, access.read(item), value) for item, value in wanted):
         return
     mapped = slot.mapped == tuple(entry.mapping for entry in pdo.layout.entries)
+    cob_id, enabled = wanted[0]
+    is_enabled = same(cob_id, slot.cob_id, enabled)
     for item, value in pdo.writes(with_mapping=not mapped):
-        access.write(item, value)
+        try:
+            access.write(item, value)
+        except ObjectRefusedError:
+            if item != cob_id or not is_enabled:  # one that cannot be switched off may be mapped all the same
+                raise
     for item, value in wanted:
         found = access.read(item)
         if not same(item, found, value):
@@ -74,7 +80,7 @@ def release(access: ObjectAccess, pdos: Sequence[Pdo]) -> None:
     for number in range(1, MOST_PDOS + 1):
         for transmit in (False, True):
             if (number, transmit) not in used:
-                _switch_off(access, communication(number, transmit, 1, DataType.U32, "COB-ID"))
+                switch_off(access, number, transmit)
 
 
 def _zero(access: ObjectAccess, item: DriveObject) -> None:
@@ -85,10 +91,16 @@ def _zero(access: ObjectAccess, item: DriveObject) -> None:
         return  # the drive minds it for events alone; at SYNC it is not to matter
 
 
-def _switch_off(access: ObjectAccess, cob_id: DriveObject) -> None:
+def switch_off(access: ObjectAccess, number: int, transmit: bool) -> None:
+    """Have a PDO not exist, where the drive lets that be set."""
+    cob_id = _cob_id(number, transmit)
     try:
         found = access.read_if_present(cob_id)
         if found is not None and not found & INVALID:
             access.write(cob_id, found | INVALID)
     except ObjectRefusedError:
         return  # a PDO that cannot be switched off does no harm
+
+
+def _cob_id(number: int, transmit: bool) -> DriveObject:
+    return communication(number, transmit, 1, DataType.U32, "COB-ID")

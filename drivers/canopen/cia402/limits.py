@@ -4,15 +4,15 @@ from math import ceil, floor
 
 from drivers.canopen.capabilities import Capabilities
 from drivers.canopen.cia301.object_table import Need, ObjectTable
-from drivers.canopen.cia301.objects import HIGHEST_POSITION, LOWEST_POSITION, MAX_TORQUE
+from drivers.canopen.cia301.objects import HIGHEST_POSITION, LOWEST_POSITION, MAX_TORQUE, DriveObject
 from drivers.canopen.settings import CanopenSettings
 from drivers.errors import DriveConfigurationError
 
 _PURPOSE = "limit in the drive"
 
 
-def set_limits(table: ObjectTable, settings: CanopenSettings, found: Capabilities) -> None:
-    """Set each limit that the settings name, and read it back.
+def set_limits(table: ObjectTable, settings: CanopenSettings, found: Capabilities) -> str:
+    """Set each limit that the settings name, and read it back; what the drive's own limit of current is, in words.
 
     Raises:
         DriveConfigurationError: the drive has no such limit, refuses it, or keeps another one.
@@ -21,11 +21,27 @@ def set_limits(table: ObjectTable, settings: CanopenSettings, found: Capabilitie
         _set_current(table, settings, found, settings.current_limit_a)
     if settings.position_min_rad is not None and settings.position_max_rad is not None:
         _set_positions(table, found, settings.position_min_rad, settings.position_max_rad)
+    return "" if settings.current_limit_a is not None else _own_current(table, found)
+
+
+def _own_current(table: ObjectTable, found: Capabilities) -> str:
+    """The lowest limit of current that somebody has set in the drive, in words; "" where it tells none."""
+    told = {item: table.ask(item, _PURPOSE) for item in _limiting(found) if found.scale.tells(item)}
+    limits_a = {item: value * found.scale.current_a(item) for item, value in told.items() if value}
+    if not limits_a:
+        return ""
+    lowest = min(limits_a, key=limits_a.__getitem__)
+    return f"The drive limits the motor current to {limits_a[lowest]:.3g} A ({lowest}); current_limit_a sets it."
+
+
+def _limiting(found: Capabilities) -> list[DriveObject]:
+    """The objects that limit the current, where a drive has them."""
+    return list(dict.fromkeys((found.profile.current_limit, MAX_TORQUE)))
 
 
 def _set_current(table: ObjectTable, settings: CanopenSettings, found: Capabilities, limit_a: float) -> None:
     """Set the highest current in every object that limits it; one that is lower already may stay."""
-    candidates = dict.fromkeys((found.profile.current_limit, MAX_TORQUE))
+    candidates = _limiting(found)
     there = [item for item in candidates if table.has(item, _PURPOSE)]
     items = [item for item in there if found.scale.tells(item)]
     if not items:
@@ -44,9 +60,8 @@ def _set_current(table: ObjectTable, settings: CanopenSettings, found: Capabilit
             if before is not None and 0 < before <= wanted:
                 table.note(item, Need.REQUIRED, _PURPOSE, True, f"{before}, as it was: lower than {wanted} already")
                 continue
-            why = str(error).removeprefix(f"drive '{settings.device}': ")
             raise DriveConfigurationError(
-                settings.device, f"current_limit_a is {limit_a:g} A: {why}; choose one that the drive takes"
+                settings.device, f"current_limit_a is {limit_a:g} A: {error.message}; choose one that the drive takes"
             ) from error
 
 

@@ -24,6 +24,7 @@ from drivers.canopen.guard_trial import stops_when_silent
 from drivers.canopen.session import Session
 from drivers.contract import Mode, Status
 from drivers.errors import DriveConnectionError, DriveError, DriveFault, DriveStateError, WatchdogError
+from drivers.refusal import not_cleared
 
 SWITCH_OFF_S: Final = 0.5
 _HOLD_S: Final = 0.03  # of each level of the reset bit at first: a drive looks at it every 1 .. 20 ms
@@ -120,13 +121,11 @@ class PowerStage:
         self._refresh()
         if status_of(self.state) is not Status.FAULT:
             return
-        name = session.fault_name()
-        if not self._reset(session.settings.fault_reset_s):
-            raise DriveFault(
-                self._device,
-                f"cannot be cleared within {session.settings.fault_reset_s:g} s: {name}; remove the cause, then "
-                "clear it",
-            )
+        name, within_s = session.fault_name(), session.settings.fault_reset_s
+        if not self._reset(within_s):
+            brakes = " (the drive brakes still: its ramps may be slow, 0x6085 or 0x6084)"
+            braking = brakes if self.state is State.FAULT_REACTION else ""
+            raise not_cleared(self._device, f"{name}, after {within_s:g} s{braking}")
         session.emergency = None
 
     def forgive_lost_host(self) -> None:

@@ -18,11 +18,12 @@ from drivers.canopen.cia301.objects import (
     DriveObject,
 )
 from drivers.canopen.cia301.pdo import Pdo, PdoLayout
-from drivers.canopen.cia301.pdo_setup import Slot, configure, read_slots, release
+from drivers.canopen.cia301.pdo_setup import Slot, configure, read_slots, release, switch_off
 from drivers.errors import DriveConfigurationError
 
 _DEMANDED = (CONTROLWORD, MODE, TARGET_TORQUE, TARGET_POSITION, TARGET_VELOCITY, TORQUE_OFFSET, VELOCITY_OFFSET)
 _REQUIRED = (STATUSWORD, POSITION)
+_COB_IDS = range(1, 5)  # how many PDOs of each direction have a COB-ID of their own (CiA 301, 7.3.5)
 _KINDS = {8: DataType.U8, 16: DataType.U16, 32: DataType.U32}  # of what is mapped and not used, by its bits
 
 
@@ -31,8 +32,8 @@ class ProcessData:
     """The PDOs in use.
 
     Attributes:
-        demands: the RPDO of each target; the controlword travels with it, so that neither comes before the other. Of a
-            drive without any target, that of the controlword alone.
+        demands: the RPDO of each target that found room; the controlword travels with it, so that neither comes before
+            the other. Of a drive without any target, that of the controlword alone.
         tpdos: what the drive tells at every SYNC.
         lost: objects that found no room in a TPDO.
     """
@@ -109,44 +110,44 @@ class Arrangement:
             groups: what is measured; objects of a group are to be in one TPDO.
 
         Raises:
-            DriveConfigurationError: there is no room for a target, the statusword or the position; with each refusal.
+            DriveConfigurationError: there is no room for any target, the statusword or the position; with each refusal.
         """
         self._slots = read_slots(self._access, transmit=False)
-        demands = {target: self._place_demand(target, offsets) for target in targets}
+        placed = {target: self._place_demand(target, offsets) for target in targets or (CONTROLWORD,)}
+        demands = {target: pdo for target, pdo in placed.items() if pdo is not None}
         if not demands:
-            demands = {CONTROLWORD: self._place_controlword()}
+            raise self._no_room(" and ".join(map(str, dict.fromkeys((CONTROLWORD, *targets)))), "RPDO")
+        self._refusals.clear()
         self._slots = read_slots(self._access, transmit=True)
         lost = self._place_measured(groups)
         release(self._access, self._used)
         return ProcessData(demands, tuple(pdo for pdo in self._used if pdo.transmit), lost)
 
-    def _place_demand(self, target: DriveObject, offsets: Sequence[DriveObject]) -> Pdo:
-        self._refusals.clear()
-        layouts = [[CONTROLWORD, target, *offsets], [CONTROLWORD, target]]
-        made = next(filter(None, (self._place(layout) for layout in layouts)), None)
-        made = made or self._take_fixed((CONTROLWORD, target), _DEMANDED)
-        if made is None:
-            raise self._no_room(f"{CONTROLWORD} and {target}", "RPDO")
-        return made
-
-    def _place_controlword(self) -> Pdo:
-        made = self._place([CONTROLWORD]) or self._take_fixed((CONTROLWORD,), _DEMANDED)
-        if made is None:
-            raise self._no_room(str(CONTROLWORD), "RPDO")
-        return made
+    def _place_demand(self, target: DriveObject, offsets: Sequence[DriveObject]) -> Pdo | None:
+        needed = list(dict.fromkeys((CONTROLWORD, target)))
+        made = next(filter(None, (self._place(layout) for layout in ([*needed, *offsets], needed))), None)
+        return made or self._take_fixed(needed, _DEMANDED)
 
     def _place_measured(self, groups: Sequence[Sequence[DriveObject]]) -> tuple[DriveObject, ...]:
+        """Place the groups, or first of all what is required in one TPDO; return what found no room."""
+        for tried in (groups, [_REQUIRED, *groups]):
+            self._used = [pdo for pdo in self._used if not pdo.transmit]
+            lost = self._place_groups(tried)
+            missing = [str(item) for item in _REQUIRED if item in lost]
+            if not missing:
+                break
+        else:
+            raise self._no_room(" and ".join(missing), "TPDO")
+        return lost
+
+    def _place_groups(self, groups: Sequence[Sequence[DriveObject]]) -> tuple[DriveObject, ...]:
         """Place the groups, then alone what did not fit; return what found no room."""
-        self._refusals.clear()
-        left = [item for group in groups for item in self._place_group(list(group))]
-        lost = []
-        for item in sorted(left, key=lambda item: item not in _REQUIRED):
-            if self._is_told(item) or self._place([item]) or self._take_fixed((item,), None):
-                continue
-            if item in _REQUIRED:
-                raise self._no_room(str(item), "TPDO")
-            lost.append(item)
-        return tuple(lost)
+        left = [item for group in groups for item in self._place_group([it for it in group if not self._is_told(it)])]
+        ordered = sorted(left, key=lambda item: item not in _REQUIRED)
+        return tuple(item for item in ordered if not (self._is_told(item) or self._place_alone(item)))
+
+    def _place_alone(self, item: DriveObject) -> Pdo | None:
+        return self._place([item]) or self._take_fixed((item,), None)
 
     def _place_group(self, group: list[DriveObject]) -> list[DriveObject]:
         """Place as much of a group as fits; return the rest."""
@@ -191,12 +192,19 @@ class Arrangement:
         return (slot for slot in self._slots if (slot.number, slot.transmit) not in used)
 
     def _configure(self, slot: Slot, layout: PdoLayout) -> Pdo | None:
-        base = (0x80 if slot.transmit else 0x100) + 0x100 * slot.number
-        pdo = Pdo(slot.number, slot.transmit, base + self._node_id, layout)
+        taken = {pdo.cob_id for pdo in self._used if pdo.transmit == slot.transmit}
+        cob_ids = {n: (0x80 if slot.transmit else 0x100) + 0x100 * n + self._node_id for n in _COB_IDS}
+        free = [n for n in cob_ids if cob_ids[n] not in taken]
+        if not free:
+            return None
+        owner = slot.number if slot.number in free else free[0]
+        if owner != slot.number:
+            switch_off(self._access, owner, slot.transmit)
+        pdo = Pdo(slot.number, slot.transmit, cob_ids[owner], layout)
         try:
             configure(self._access, self._device, pdo, slot)
         except DriveConfigurationError as error:
-            self._refusals.append(str(error).removeprefix(f"drive '{self._device}': "))
+            self._refusals.append(error.message)
             return None
         self._used.append(pdo)
         return pdo

@@ -19,7 +19,7 @@ class PdoParameters:
     """Communication and mapping parameter of one PDO.
 
     A PDO is changed in this order: make it not exist (bit 31 of its COB-ID), number of mapped objects to 0, the mapped
-    objects, their number, and the COB-ID without bit 31.
+    objects, their number, and the COB-ID without bit 31. One whose COB-ID cannot be written goes on existing.
 
     Args:
         dictionary: where the parameters are.
@@ -79,8 +79,12 @@ class PdoParameters:
         if value not in _TYPES:
             raise Abort(AbortCode.INVALID_VALUE)
 
+    @property
+    def _is_in_use(self) -> bool:
+        return self.exists and self._dictionary.entry(self._link, 1).access.writable
+
     def _check_count(self, value: int) -> None:
-        if self.exists:
+        if self._is_in_use:
             raise Abort(AbortCode.UNSUPPORTED_ACCESS)
         if value > _PLACES:
             raise Abort(AbortCode.MAPPING_TOO_LONG)
@@ -93,7 +97,7 @@ class PdoParameters:
             raise Abort(AbortCode.MAPPING_TOO_LONG)
 
     def _check_place(self, value: int) -> None:
-        if self.exists or self._dictionary.number(self._mapping, 0) != 0:
+        if self._is_in_use or self._dictionary.number(self._mapping, 0) != 0:
             raise Abort(AbortCode.UNSUPPORTED_ACCESS)
         if value:
             self._check_mappable(value)

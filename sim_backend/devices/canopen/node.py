@@ -9,7 +9,7 @@ from sim_backend.devices.canopen.dictionary import COMMUNICATION, Dictionary
 from sim_backend.devices.canopen.emergency import Emergency, ErrorCode
 from sim_backend.devices.canopen.guarding import Deadline, LifeGuard
 from sim_backend.devices.canopen.heartbeat import HeartbeatConsumer, HeartbeatProducer
-from sim_backend.devices.canopen.objects.communication import PDOS
+from sim_backend.devices.canopen.objects.communication import MOST_PDOS
 from sim_backend.devices.canopen.receive_pdo import ReceivePdo, Taken
 from sim_backend.devices.canopen.sdo_server import SdoServer
 from sim_backend.devices.canopen.transmit_pdo import TransmitPdo
@@ -66,12 +66,13 @@ class Node:
         self.state = NmtState.BOOT_UP
         self.losses = 0
         self._sdo = SdoServer(dictionary)
-        self._rpdos = [ReceivePdo(dictionary, number) for number in range(PDOS)]
-        self._tpdos = [TransmitPdo(dictionary, number) for number in range(PDOS)]
+        received, sent = ([n for n in range(MOST_PDOS) if base + n in dictionary.objects] for base in (0x1400, 0x1800))
+        self._rpdos = [ReceivePdo(dictionary, number) for number in received]
+        self._tpdos = [TransmitPdo(dictionary, number) for number in sent]
         self._producer = HeartbeatProducer(dictionary)
         self._consumer = HeartbeatConsumer(dictionary, conduct.deaf)
         self._guard = LifeGuard(dictionary, conduct.deaf)
-        self._deadlines = [Deadline(dictionary, 0x1400 + number, conduct.deaf) for number in range(PDOS)]
+        self._deadlines = [Deadline(dictionary, 0x1400 + number, conduct.deaf) for number in received]
         self._late_answers: list[tuple[float, Frame]] = []
         self._emergency = Emergency(dictionary)
 

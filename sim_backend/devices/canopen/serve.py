@@ -70,10 +70,7 @@ def data_sheet(family: str) -> str:
         ParameterError: the family is not known.
     """
     found = _family(family)
-    objects = found.objects(Rating.of(behind_a_drive()))
-    vendor = next(one for one in objects if one.index == 0x1018).entries[1].default
-    assert isinstance(vendor, int)
-    return eds_text(objects, found.device_name, vendor)
+    return eds_text(found.objects(Rating.of(behind_a_drive())), found.device_name)
 
 
 def _family(name: str) -> Family:

@@ -15,7 +15,9 @@ TURN = 4096
 VOLTAGE_BIT, HEAT_BIT, CURRENT_BIT, OVERLOAD_BIT = 1, 4, 8, 32
 _MEASURED = range(56, 72)
 _READ_ONLY = (range(5), _MEASURED)
-MODE, TORQUE, GOAL, GOAL_TIME, LIMIT, LOCK, STATUS = 33, 40, 42, 44, 48, 55, 65
+LOWEST, HIGHEST, MODE, TORQUE, GOAL, GOAL_TIME, LIMIT, LOCK, STATUS = 9, 11, 33, 40, 42, 44, 48, 55, 65
+# as delivered: it answers everything, 70 degC, 0.1 V from 4.0 on, gains; what is not here is 0
+_DELIVERED = {8: 1, 13: 70, 14: 255, 15: 40, 21: 32, 22: 32, LOCK: 1}
 _SIZE = 96
 _CURRENT_STEP_A = 0.0065
 _STALL_A = 2.7
@@ -37,9 +39,10 @@ class StsServo:
         self._bytes[0:2] = bytes(SIMULATED_FIRMWARE)
         self._put(3, "H", STS3215)
         self._bytes[5] = servo_id
-        self._put(16, "H", 1000)
-        self._put(LIMIT, "H", 1000)
-        self._bytes[LOCK] = 1
+        for address, value in _DELIVERED.items():
+            self._bytes[address] = value
+        for address, value in ((HIGHEST, TURN - 1), (16, 1000), (LIMIT, 1000)):
+            self._put(address, "H", value)
         self._offset = offset
         self._hold = PositionHold(parameters)
         self._count_rad = count_rad(parameters)
@@ -67,7 +70,10 @@ class StsServo:
         limit = self._get(LIMIT, "H") / 1000.0
         if self._bytes[MODE] == 2:
             return Demand(VOLTAGE, max(-limit, min(limit, _magnitude(self._get(GOAL_TIME, "H"), 10) / 1000.0)))
-        target_rad = (self._get(GOAL, "H") - self._offset) * self._count_rad
+        goal, lowest, highest = (self._get(address, "H") for address in (GOAL, LOWEST, HIGHEST))
+        if highest > lowest:  # 0 and 0: any, over several turns
+            goal = max(lowest, min(highest, goal))
+        target_rad = (goal - self._offset) * self._count_rad
         limit_a = limit * _STALL_A
         return Demand(CURRENT, max(-limit_a, min(limit_a, self._hold.current_a(target_rad, seen))))
 

@@ -132,7 +132,7 @@ def test_a_fault_that_stays_cannot_be_cleared(node, drive_of):
     node._become = lambda _word: None
     with pytest.raises(DriveFault):
         _run(drive)
-    with pytest.raises(DriveFault, match=r"cannot be cleared within 0\.3 s: 0x4310, drive temperature too high"):
+    with pytest.raises(DriveFault, match=r"cannot be cleared: 0x4310, drive temperature too high, after 0\.3 s;"):
         drive.clear_fault()
 
 

@@ -61,6 +61,29 @@ def test_a_drive_that_does_not_tell_its_rated_current_asks_for_it(name, without,
             assert (Mode.CURRENT in found.modes) is takes
 
 
+def test_a_drive_that_brakes_for_long_is_not_said_to_have_its_cause_still(tmp_path) -> None:
+    sheet = Trait(without=(0x6007,), default={(0x6085, 0): 200}).write(tmp_path, "slow-ramp")
+    result = attempt(sheet)
+    assert result.moved
+    assert "cannot be cleared: 0x8130" in result.refusal
+    assert "the drive brakes still: its ramps may be slow, 0x6085 or 0x6084" in result.refusal
+
+
+def test_a_drive_that_holds_back_its_current_says_so_before_anything_moves(tmp_path) -> None:
+    sheet = Trait(default={(0x6072, 0): 100}).write(tmp_path, "held-back")
+    with device(sheet) as running:
+        with host(running, rated_current_a=RATED_A) as drive:
+            drive.open(PERIOD_S)
+            notes = drive.describe().notes
+            assert (
+                "The drive limits the motor current to 0.1 A (max torque (0x6072:00)); current_limit_a sets it."
+                in notes
+            )
+        with host(running, rated_current_a=RATED_A, current_limit_a=0.5) as drive:
+            drive.open(PERIOD_S)
+            assert not [note for note in drive.describe().notes if "limits the motor current" in note]
+
+
 @pytest.mark.parametrize("name", ["plain", "life-guarding", "rpdo-timer", "no-reaction-object"])
 def test_a_drive_that_never_watches_is_never_called_proven(name, tmp_path) -> None:
     result = attempt(TRAITS[name].write(tmp_path, name), Conduct(deaf=True))

@@ -5,8 +5,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from sim_backend.devices.canopen.data_types import U8, U32
 from sim_backend.devices.canopen.eds import eds_text
-from sim_backend.devices.canopen.objects.entry import Access, Entry, Object
+from sim_backend.devices.canopen.objects.entry import Access, Entry, Object, record
 from sim_backend.devices.canopen.objects.family import Rating
 from sim_backend.devices.canopen.objects.generic import GENERIC
 from sim_backend.devices.joint_tables import behind_a_drive
@@ -45,7 +46,7 @@ class Trait:
     def write(self, folder: Path, name: str) -> Path:
         """Write the data sheet; return its path."""
         path = folder / f"{name}.eds"
-        path.write_text(eds_text(self._objects(), "CiA 402 drive of a test", 0x12345), encoding="ascii")
+        path.write_text(eds_text(self._objects(), "CiA 402 drive of a test"), encoding="ascii")
         return path
 
     def _objects(self) -> list[Object]:
@@ -88,6 +89,21 @@ _STATIC = {
     (0x1A02, 0): 2, (0x1A02, 1): 0x60410010, (0x1A02, 2): 0x60640020,
     (0x1A03, 0): 2, (0x1A03, 1): 0x60410010, (0x1A03, 2): 0x606C0020,
 }  # fmt: skip
+# the fifth default of CiA 402; a device has no COB-ID of its own for it
+_FIFTH = (
+    record(0x1404, "RPDO 5", Entry(1, "COB-ID", U32, default=0x8000_0000), Entry(2, "Transmission type", U8)),
+    Object(
+        0x1604,
+        "RPDO 5 mapping",
+        (
+            Entry(0, "Number", U8, Access.CONST, 2),
+            Entry(1, "First", U32, Access.CONST, 0x60400010),
+            Entry(2, "Second", U32, Access.CONST, 0x60710010),
+        ),
+    ),
+)
+_NO_TORQUE_IN_FOUR = _STATIC | {(0x1601, 0): 1}
+_COB_IDS = {(base + n, 1): first + 0x100 * n for base, first in ((0x1400, 0x200), (0x1800, 0x180)) for n in range(4)}
 _NO_GUARD: dict[str, Any] = {"without": (0x1016, 0x100C, 0x100D), "without_places": RPDO_TIMERS}
 
 TRAITS: dict[str, Trait] = {
@@ -108,6 +124,17 @@ TRAITS: dict[str, Trait] = {
     "fixed-interpolation": Trait(access={(0x60C2, 1): Access.RO, (0x60C2, 2): Access.RO}),
     "two-objects-a-pdo": Trait(without_places=_beyond(2)),
     "static-mapping": Trait(access=_mappings(lambda _place: Access.CONST), default=_STATIC, without=(0x60B2,)),
+    "no-torque-in-a-pdo": Trait(
+        access=_mappings(lambda _place: Access.CONST), default=_NO_TORQUE_IN_FOUR, without=(0x60B2,), modes=(8,)
+    ),
+    "torque-in-the-fifth-pdo": Trait(
+        access=_mappings(lambda _place: Access.CONST), default=_NO_TORQUE_IN_FOUR, without=(0x60B2,), added=_FIFTH
+    ),
+    "pdos-that-stay-on": Trait(access=dict.fromkeys(_COB_IDS, Access.RO), default=_COB_IDS),
+    "one-pdo-to-send": Trait(without=(0x1801, 0x1802, 0x1803, 0x1A01, 0x1A02, 0x1A03), without_places=_beyond(3)),
+    "heartbeat-limited-as-a-time": Trait(
+        high={(0x1016, 1): 0xFFFF, (0x1016, 2): 0xFFFF}, without=(0x100C, 0x100D), without_places=RPDO_TIMERS
+    ),
     "no-current": Trait(without=(0x6075, 0x6078, 0x6073)),
     "no-torque": Trait(without=(0x6071, 0x6077, 0x6075, 0x6078), modes=(8,)),
     "no-error-code": Trait(without=(0x603F,)),

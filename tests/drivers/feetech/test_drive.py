@@ -3,6 +3,7 @@
 import time
 
 import pytest
+from scservo_sdk import COMM_SUCCESS, PortHandler, sms_sts
 
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveFault, WatchdogError
@@ -16,6 +17,7 @@ pytestmark = pytest.mark.virtual_time
 JOINT = JointScale(counts_per_turn=4096, gear_ratio=20.0)
 OFF = Command(Mode.OFF)
 PERIOD_S = 0.01
+HIGHEST = 11  # in its memory
 
 
 def drive_of(device, servo_id=1, **settings):
@@ -116,6 +118,20 @@ def test_a_position_beyond_its_one_turn_is_refused(opened):
     drive.enable(Mode.POSITION)
     with pytest.raises(DriveConfigurationError, match="knows one turn"):
         drive.exchange(Command(Mode.POSITION, 2.0))
+
+
+def test_a_position_beyond_the_servos_own_limits_is_refused():
+    with device_process("feetech", "--baud", "0") as device:
+        port = PortHandler(device.port)
+        assert port.openPort()
+        assert sms_sts(port).write2ByteTxRx(1, HIGHEST, 300) == (COMM_SUCCESS, 0)
+        port.closePort()
+        drive = drive_of(device)
+        drive.open(PERIOD_S)
+        drive.enable(Mode.POSITION)
+        with pytest.raises(DriveConfigurationError, match=r"this one 0 \.\. 300 of it"):
+            drive.exchange(Command(Mode.POSITION, 0.1))
+        drive.close()
 
 
 def test_a_count_is_followed_over_turns_by_the_speed():

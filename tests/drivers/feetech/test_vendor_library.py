@@ -13,6 +13,7 @@ from sim_backend.devices.feetech import packets
 from tests.devices.device_process import device_process
 
 TORQUE, MODE, GOAL_TIME, PIECE = 40, 33, 44, 56
+RESPONSE_LEVEL, LOWEST, HIGHEST = 8, 9, 11
 BACKWARD = 1 << 10
 
 
@@ -120,3 +121,15 @@ def test_it_goes_to_a_position(host):
     host.WritePosEx(2, here + 500, 0, 0)
     time.sleep(0.5)
     assert asked(host.ReadPos, 2) == pytest.approx(here + 500, abs=120)  # friction holds it before it is there
+
+
+def test_it_is_as_delivered_and_keeps_within_its_limits(host):
+    assert asked(lambda servo: host.read2ByteTxRx(servo, LOWEST), 2) == 0
+    assert asked(lambda servo: host.read2ByteTxRx(servo, HIGHEST), 2) == 4095
+    assert asked(lambda servo: host.read1ByteTxRx(servo, RESPONSE_LEVEL), 2) == 1
+    here = asked(host.ReadPos, 2)
+    assert host.write2ByteTxRx(2, HIGHEST, here + 300) == (COMM_SUCCESS, 0)
+    assert host.write1ByteTxRx(2, TORQUE, 1) == (COMM_SUCCESS, 0)
+    host.WritePosEx(2, here + 900, 0, 0)
+    time.sleep(0.5)
+    assert asked(host.ReadPos, 2) == pytest.approx(here + 300, abs=120)

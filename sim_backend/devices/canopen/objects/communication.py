@@ -9,14 +9,12 @@ RO, RW, CONST = Access.RO, Access.RW, Access.CONST
 
 DEVICE_TYPE_SERVO = 0x00020192  # CiA 402, servo drive
 PDO_DOES_NOT_EXIST = 0x80000000
-PDOS = 4
+PDOS, MOST_PDOS = 4, 8  # that this node has; that a data sheet may give it
 ERRORS_KEPT = 5
 CONSUMERS = 2
 _SYNCHRONOUS = 1
 _EVENT = 255
 
-_RPDO_COB_IDS = (0x200, 0x300, 0x400, 0x500)
-_TPDO_COB_IDS = (0x180, 0x280, 0x380, 0x480)
 _CONTROLWORD = 0x60400010
 _STATUSWORD = 0x60410010
 
@@ -57,7 +55,7 @@ def communication(vendor: int, product: int, revision: int, serial: int, name: s
             Entry(1, "COB-ID client to server", U32, RO, 0x600, with_node_id=True),
             Entry(2, "COB-ID server to client", U32, RO, 0x580, with_node_id=True),
         ),
-        *_pdos(),
+        *pdos(range(PDOS)),
     ]
 
 
@@ -66,32 +64,25 @@ def _error_history() -> Object:
     return Object(0x1003, "Pre-defined error field", (Entry(0, "Number of errors", U8), *kept))
 
 
-def _pdos() -> Iterator[Object]:
-    for number, cob_id in enumerate(_RPDO_COB_IDS):
-        yield record(
-            0x1400 + number,
-            f"RPDO {number + 1} communication parameter",
-            *_link(number, cob_id),
-            Entry(5, "Event timer", U16),  # ms
-        )
-    for number in range(PDOS):
-        yield _mapping(0x1600 + number, f"RPDO {number + 1} mapping parameter", number, _CONTROLWORD)
-    for number, cob_id in enumerate(_TPDO_COB_IDS):
-        yield record(
-            0x1800 + number,
-            f"TPDO {number + 1} communication parameter",
-            *_link(number, cob_id),
-            Entry(3, "Inhibit time", U16),  # 100 us
-            Entry(5, "Event timer", U16),  # ms
-        )
-    for number in range(PDOS):
-        yield _mapping(0x1A00 + number, f"TPDO {number + 1} mapping parameter", number, _STATUSWORD)
+def pdos(numbers: range) -> Iterator[Object]:
+    """Return communication and mapping parameters of PDOs, from 0; CiA 301 has COB-IDs for the first four."""
+    for number in numbers:
+        name = f"RPDO {number + 1}"
+        timer = Entry(5, "Event timer", U16)  # ms
+        yield record(0x1400 + number, f"{name} communication parameter", *_link(number, 0x200), timer)
+        yield _mapping(0x1600 + number, f"{name} mapping parameter", number, _CONTROLWORD)
+    for number in numbers:
+        name = f"TPDO {number + 1}"
+        timers = (Entry(3, "Inhibit time", U16), Entry(5, "Event timer", U16))  # 100 us, ms
+        yield record(0x1800 + number, f"{name} communication parameter", *_link(number, 0x180), *timers)
+        yield _mapping(0x1A00 + number, f"{name} mapping parameter", number, _STATUSWORD)
 
 
-def _link(number: int, cob_id: int) -> tuple[Entry, Entry]:
+def _link(number: int, first_cob_id: int) -> tuple[Entry, Entry]:
     exists = 0 if number == 0 else PDO_DOES_NOT_EXIST
+    cob_id = first_cob_id + 0x100 * number if number < PDOS else 0
     return (
-        Entry(1, "COB-ID", U32, RW, exists | cob_id, with_node_id=True),
+        Entry(1, "COB-ID", U32, RW, exists | cob_id, with_node_id=number < PDOS),
         Entry(2, "Transmission type", U8, RW, _EVENT if number == 0 else _SYNCHRONOUS),
     )
 

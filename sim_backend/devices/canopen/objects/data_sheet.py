@@ -1,16 +1,21 @@
 """Reading an electronic data sheet or a device configuration file (CiA 306): which objects a device has."""
 
+import codecs
+import re
 from configparser import ConfigParser, Error, SectionProxy
 from dataclasses import dataclass
 from pathlib import Path
+from struct import pack
 
-from sim_backend.devices.canopen.data_types import TYPES, U8
+from sim_backend.devices.canopen.data_types import TYPES, U8, DataType
 from sim_backend.devices.canopen.objects.entry import Access, Entry, Object
 from sim_backend.errors import ParameterError
 
-_LISTS = ("MandatoryObjects", "OptionalObjects", "ManufacturerObjects")
+_OBJECT = re.compile("[0-9a-f]{4}")
 _NODE_ID = "$NODEID"
 _VARIABLES = (0x2, 0x7)  # object types that are one value: domain, variable
+_REALS = {0x08: "<f", 0x11: "<d"}
+_ENCODINGS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,20 +51,31 @@ def read_data_sheet(path: Path) -> DataSheet:
     """
     parser = ConfigParser(interpolation=None, strict=False, inline_comment_prefixes=(";",))
     try:
-        parser.read_string(path.read_text(encoding="latin-1"))
-    except (OSError, Error) as error:
-        raise ParameterError(f"data sheet {path}: {error}") from error
-    sections = {name.lower(): parser[name] for name in parser.sections()}
-    try:
-        objects = [made for index in _listed(sections) if (made := _object(index, sections)) is not None]
-    except (KeyError, ValueError) as error:
-        raise ParameterError(f"data sheet {path}: {error} is missing or no number") from error
+        parser.read_string(_text(path))
+        sections = {name.lower(): parser[name] for name in parser.sections()}
+        objects = [made for index in _described(sections) if (made := _object(index, sections)) is not None]
+    except (OSError, ValueError, Error) as error:
+        raise ParameterError(f"data sheet {path}: {' '.join(str(error).split())}") from error
     if not objects:
-        raise ParameterError(f"data sheet {path}: lists no objects in [{'], ['.join(_LISTS)}]")
+        raise ParameterError(f"data sheet {path}: describes no objects, in sections such as [1000]")
     told = frozenset((one.index, entry.subindex) for one, entries in objects for entry in entries)
     device = sections.get("deviceinfo")
     name = device.get("ProductName", "").strip() if device is not None else ""
     return DataSheet(name or path.stem, tuple(one for one, _ in objects), told, _node_id(sections))
+
+
+def _text(path: Path) -> str:
+    """Return the text of a file; one without a mark of its encoding is read byte by byte: only names may suffer.
+
+    Raises:
+        ValueError: it is XML, or not in the encoding that it names.
+    """
+    data = path.read_bytes()
+    encoding = next((name for mark, name in _ENCODINGS.items() if data.startswith(mark)), "latin-1")
+    text = data.decode(encoding)
+    if text.lstrip().startswith("<"):
+        raise ValueError("is XML (XDD, XDC, ESI); an EDS or DCF file is wanted: save it as one in the maker's tool")
+    return text
 
 
 Made = tuple[Object, list[Entry]]
@@ -69,29 +85,22 @@ Made = tuple[Object, list[Entry]]
 def _node_id(sections: dict[str, SectionProxy]) -> int | None:
     # the misspelled name is that of the standard
     section = sections.get("devicecomissioning") or sections.get("devicecommissioning")
-    node_id = _number(section["NodeID"]) if section is not None and section.get("NodeID") else 0
+    node_id = 0 if section is None else _field(section, "NodeID")
     return node_id if 1 <= node_id <= 127 else None
 
 
-def _listed(sections: dict[str, SectionProxy]) -> list[int]:
-    indices: set[int] = set()
-    for name in _LISTS:
-        section = sections.get(name.lower())
-        if section is not None:
-            indices |= {_number(value) for key, value in section.items() if key.isdigit()}
-    return sorted(indices)
+def _described(sections: dict[str, SectionProxy]) -> list[int]:
+    """Return what has a section; the lists of a file often leave some out, or number two alike."""
+    return sorted(int(name, 16) for name in sections if _OBJECT.fullmatch(name))
 
 
 def _object(index: int, sections: dict[str, SectionProxy]) -> Made | None:
-    """Return an object; None where it is listed and not described."""
-    section = sections.get(f"{index:04x}")
-    if section is None:
-        return None
+    """Return an object; None where a section tells nothing of what is in it."""
+    section = sections[f"{index:04x}"]
     name = section.get("ParameterName", f"0x{index:04X}")
-    kind = _number(section.get("ObjectType") or "0x7")
-    if kind in _VARIABLES and not _number(section.get("SubNumber") or "0"):
+    if _field(section, "ObjectType", "0x7") in _VARIABLES and not _field(section, "SubNumber"):
         found = [_entry(0, section)]
-    elif _number(section.get("CompactSubObj") or "0"):
+    elif _field(section, "CompactSubObj"):
         found = _compact(section, sections.get(f"{index:04x}value"))
     else:
         places = (place for place in range(255) if f"{index:04x}sub{place:x}" in sections)
@@ -103,7 +112,7 @@ def _object(index: int, sections: dict[str, SectionProxy]) -> Made | None:
 
 def _compact(section: SectionProxy, values: SectionProxy | None) -> list[tuple[Entry, bool]]:
     """Return the entries of an array that is told in one section."""
-    count = _number(section["CompactSubObj"])
+    count = _field(section, "CompactSubObj")
     entries = [(Entry(0, "Highest sub-index supported", U8, Access.CONST, count), True)]
     for place in range(1, count + 1):
         value = None if values is None else values.get(str(place))
@@ -113,26 +122,35 @@ def _compact(section: SectionProxy, values: SectionProxy | None) -> list[tuple[E
 
 def _entry(place: int, section: SectionProxy, value: str | None = None) -> tuple[Entry, bool]:
     """Return an entry, and whether the file gives it a value: of a configured device its own, else the default."""
-    kind = TYPES.get(_number(section.get("DataType") or "0x5"), U8)
+    kind = TYPES.get(_field(section, "DataType", "0x5"), U8)
     text = value or (section.get("ParameterValue") or section.get("DefaultValue") or "").strip()
-    low, high = section.get("LowLimit") or "", section.get("HighLimit") or ""
-    with_node_id = _NODE_ID in text.upper()
-    default: int | str = text
-    if kind.length is not None:
-        default = _signed(_number(text.upper().replace(_NODE_ID, "").strip(" +") or "0"), kind.range)
-    limits = _limits(low, high, kind.range) if kind.length is not None else (None, None)
+    told = _value(text, kind)
+    whole = None if kind.length is None or kind.code in _REALS else kind.range
+    limits = (None, None) if whole is None else _limits(section.get("LowLimit"), section.get("HighLimit"), whole)
     entry = Entry(
         subindex=place,
         name=section.get("ParameterName", ""),
         kind=kind,
         access=_access(section.get("AccessType", "rw")),
-        default=default,
-        mappable=bool(_number(section.get("PDOMapping") or "0")),
+        default=told if told is not None else "" if kind.length is None else 0,
+        mappable=bool(_field(section, "PDOMapping")),
         low=limits[0],
         high=limits[1],
-        with_node_id=with_node_id,
+        with_node_id=_NODE_ID in text.upper(),
     )
-    return entry, bool(text)
+    return entry, told is not None
+
+
+def _value(text: str, kind: DataType) -> int | str | None:
+    """Return a value of a type; None where the text is none of it: then the file does not tell the value."""
+    if not text or kind.length is None:
+        return text or None
+    try:
+        if kind.code in _REALS:
+            return int.from_bytes(pack(_REALS[kind.code], float(text)), "little")
+        return _signed(_number(text.upper().replace(_NODE_ID, "").strip(" +") or "0"), kind.range)
+    except (ValueError, OverflowError):
+        return None
 
 
 def _access(text: str) -> Access:
@@ -142,20 +160,32 @@ def _access(text: str) -> Access:
         return Access.RW
 
 
-def _limits(low: str, high: str, whole: tuple[int, int]) -> tuple[int | None, int | None]:
+def _limits(low: str | None, high: str | None, whole: tuple[int, int]) -> tuple[int | None, int | None]:
     """Return the limits of writing; those that contradict each other, or that carry the node's number, are none."""
-    bounds = [_signed(_number(text), whole) if _is_number(text) else None for text in (low, high)]
+    bounds = [_limit(text or "", whole) for text in (low, high)]
     if None not in bounds and (bounds[0] > bounds[1] or bounds == [0, 0]):  # type: ignore[operator]
         return None, None
     return bounds[0], bounds[1]
 
 
-def _is_number(text: str) -> bool:
+def _limit(text: str, whole: tuple[int, int]) -> int | None:
     try:
-        _number(text)
+        return _signed(_number(text), whole)
     except ValueError:
-        return False
-    return True
+        return None
+
+
+def _field(section: SectionProxy, key: str, absent: str = "0") -> int:
+    """Return the number of a key.
+
+    Raises:
+        ValueError: it is none; with section, key and text.
+    """
+    text = section.get(key) or absent
+    try:
+        return _number(text)
+    except ValueError:
+        raise ValueError(f"[{section.name}] {key} is '{text}'; a number is wanted") from None
 
 
 def _number(text: str) -> int:

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import pi
 
+from sim_backend.devices.canopen.objects.communication import MOST_PDOS, PDOS, pdos
 from sim_backend.devices.canopen.objects.data_sheet import DataSheet
 from sim_backend.devices.canopen.objects.entry import Entry, Object
 from sim_backend.devices.canopen.objects.epos4 import EPOS4, MAXON
@@ -11,7 +12,8 @@ from sim_backend.devices.canopen.objects.family import Family, Rating, increment
 from sim_backend.devices.canopen.objects.generic import GENERIC
 from sim_backend.devices.canopen.objects.homing import homing_objects
 
-_DEVICE_NAME, _HOMING_METHOD = 0x1008, 0x6098
+_DEVICE_NAME, _CONSUMER_HEARTBEAT, _HOMING_METHOD = 0x1008, 0x1016, 0x6098
+_LINK_TO_MAPPING = 0x1400 ^ 0x1600  # from the communication parameter of a PDO to its mapping parameter, and back
 # what whoever commissions a drive enters for the motor on it; a data sheet cannot know it
 _OF_THE_MOTOR = frozenset({(0x6075, 0), (0x6076, 0), (0x608F, 1), (0x608F, 2), (0x3001, 1), (0x3001, 2), (0x3001, 5)})
 _REVOLUTION, _RADIAN, _DEGREE = 0xB4, 0x10, 0x41  # of CiA 303-2
@@ -45,8 +47,12 @@ def _modes(sheet: DataSheet) -> frozenset[int]:
 
 def _objects(sheet: DataSheet, base: Family, rating: Rating) -> list[Object]:
     """The file's objects, and hidden ones for whatever the drive works with beside them."""
-    homes = any(one.index == _HOMING_METHOD for one in sheet.objects)
-    inside = {one.index: one for one in (*(homing_objects(rating) if homes else ()), *base.objects(rating))}
+    listed = {one.index for one in sheet.objects}
+    homing = homing_objects(rating) if _HOMING_METHOD in listed else ()
+    more = [
+        one for one in pdos(range(PDOS, MOST_PDOS)) if one.index in listed or one.index ^ _LINK_TO_MAPPING in listed
+    ]
+    inside = {one.index: one for one in (*homing, *more, *base.objects(rating))}
     made = [_visible(one, inside.pop(one.index, None), sheet) for one in sheet.objects]
     return [*made, *(_hidden(one) for one in inside.values())]
 
@@ -62,6 +68,8 @@ def _visible(one: Object, base: Object | None, sheet: DataSheet) -> Object:
 
 def _entry(index: int, entry: Entry, behind: Entry | None, sheet: DataSheet) -> Entry:
     place = (index, entry.subindex)
+    if index == _CONSUMER_HEARTBEAT and entry.high is not None and entry.high >> 16 == 0:
+        entry = replace(entry, high=None)  # of the time alone: node 0, which is none, would be all that it lets in
     if behind is None or type(behind.default) is not type(entry.default):
         return entry
     if place not in sheet.told or place in _OF_THE_MOTOR:

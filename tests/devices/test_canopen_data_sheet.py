@@ -1,0 +1,110 @@
+"""Data sheets by CiA 306 as makers write them: encodings, types, short forms; and what is refused, with the place."""
+
+from struct import pack
+
+import pytest
+
+from sim_backend.devices.canopen.objects.data_sheet import read_data_sheet
+from sim_backend.devices.canopen.serve import data_sheet
+from sim_backend.errors import ParameterError
+
+HEAD = """[DeviceInfo]
+ProductName=Drive 10 \u00b5m
+[MandatoryObjects]
+SupportedObjects=1
+1=0x1000
+[1000]
+ParameterName=Device type
+DataType=0x0007
+AccessType=ro
+DefaultValue=0x00020192
+"""
+OTHERS = """[ManufacturerObjects]
+SupportedObjects=2
+1=0x2000
+1=0x2001
+[2000]
+ParameterName=Gain
+DataType=0x0008
+DefaultValue=-0.25
+LowLimit=-1.0
+HighLimit=100
+[2001]
+ParameterName=Slip of the pen
+DataType=0x0007
+DefaultValue=ten
+[2002]
+ParameterName=COB-ID
+DataType=0x0007
+DefaultValue=0x180+$NodeID
+ParameterValue=$NODEID+0x40000200
+[2003]
+ParameterName=Gains
+ObjectType=0x8
+DataType=0x0006
+CompactSubObj=2
+DefaultValue=7
+[2003Value]
+NrOfEntries=1
+2=0xfF
+[2004]
+ParameterName=Negative
+DataType=0x0003
+DefaultValue=0xFFFE
+"""
+
+
+@pytest.fixture
+def write(tmp_path):
+    def written(text, encoding="latin-1"):
+        path = tmp_path / "drive.eds"
+        path.write_bytes(text.encode(encoding))
+        return path
+
+    return written
+
+
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-8-sig", "utf-16"])
+def test_a_file_is_read_in_the_encoding_that_it_names(write, encoding) -> None:
+    sheet = read_data_sheet(write(HEAD, encoding))
+    assert sheet.name == "Drive 10 \u00b5m"
+    assert sheet.default(0x1000) == 0x20192
+
+
+def test_values_are_those_of_their_type(write) -> None:
+    sheet = read_data_sheet(write(HEAD + OTHERS))
+    assert sheet.default(0x2000) == int.from_bytes(pack("<f", -0.25), "little")
+    gain = next(one.entries[0] for one in sheet.objects if one.index == 0x2000)
+    assert (gain.low, gain.high) == (None, None)  # of a number of another kind than what is compared
+    cob_id = next(one.entries[0] for one in sheet.objects if one.index == 0x2002)
+    assert (cob_id.default, cob_id.with_node_id) == (0x40000200, True)
+    assert [sheet.default(0x2003, place) for place in range(3)] == [2, 7, 0xFF]
+    assert sheet.default(0x2004) == -2
+
+
+def test_a_value_that_is_no_number_is_not_told(write) -> None:
+    sheet = read_data_sheet(write(HEAD + OTHERS))
+    assert sheet.default(0x2001) is None
+    assert any(one.index == 0x2001 for one in sheet.objects)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('<?xml version="1.0"?>\n<ISO15745ProfileContainer/>', "is XML .* an EDS or DCF file is wanted"),
+        ("A drive\n", "File contains no section headers"),
+        (HEAD.replace("[1000]", "[1000]\nObjectType=VAR"), r"\[1000\] ObjectType is 'VAR'; a number is wanted"),
+        ("[DeviceInfo]\n", "describes no objects"),
+    ],
+)
+def test_what_is_no_data_sheet_is_refused_with_the_place(write, text, words) -> None:
+    with pytest.raises(ParameterError, match=f"drive.eds: {words}"):
+        read_data_sheet(write(text))
+
+
+def test_the_sheet_of_a_simulated_drive_has_its_mappings_in_hexadecimal(write) -> None:
+    text = data_sheet("epos4")
+    assert "DefaultValue=0x60400010\n" in text  # some readers put 0 for any other form
+    assert "VendorNumber=251\n" in text
+    assert "BaudRate_10=0\nBaudRate_20=0\n" in text
+    assert read_data_sheet(write(text)).default(0x1600, 1) == 0x60400010
