@@ -43,8 +43,8 @@ class OnlineFriction:
     largest_n_m: float = 0.0
 
     def current_a(
-        self, position_rad: FloatArray, speed_rad_s: FloatArray, acceleration_rad_s2: float, gravity_a: float,
-        temperature_c: float,
+        self, position_rad: FloatArray, speed_rad_s: FloatArray, acceleration_rad_s2: float, teeth_a: FloatArray,
+        gravity_a: float, temperature_c: float,
     ) -> FloatArray:  # fmt: skip
         """Current [A] at each of some moments in one direction, shape (n,).
 
@@ -52,16 +52,17 @@ class OnlineFriction:
             position_rad: shape (n,).
             speed_rad_s: shape (n,), of one sign.
             acceleration_rad_s2: of all of them.
+            teeth_a: what the teeth pass on, weight and inertia of the arm, shape (n,).
             gravity_a: current that the load takes at 90 degrees.
             temperature_c: NaN where it is not measured: effects of it count as none then.
         """
         motion = self._motion(position_rad, speed_rad_s, acceleration_rad_s2, gravity_a, temperature_c)
         carried_n_m = self._torque_n_m(motion, carried=True)
-        # what the teeth transmit is the model's own weight and springs, as in the fit, and not the weight by the rig
-        beyond_kg_m2 = motion.load_inertia_kg_m2 + (self.facts.arm_inertia_kg_m2 or 0.0)
-        motion = motion.having(load_effort=carried_n_m + beyond_kg_m2 * motion.acceleration)
-        torque_n_m = carried_n_m + self._torque_n_m(motion, carried=False)
-        return np.asarray(torque_n_m / self.torque_n_m_a - gravity_a * np.sin(position_rad))
+        weight_a = gravity_a * np.sin(position_rad)
+        # the teeth's weight is that by the rig; the load of the fit is the model's own weight and springs
+        load_n_m = carried_n_m + self.torque_n_m_a * (teeth_a - weight_a)
+        torque_n_m = carried_n_m + self._torque_n_m(motion.having(load_effort=load_n_m), carried=False)
+        return np.asarray(torque_n_m / self.torque_n_m_a - weight_a)
 
     def _torque_n_m(self, motion: Motion, carried: bool) -> FloatArray:
         """Of the terms that are part of the load, or of the others, shape (n,)."""

@@ -2,8 +2,8 @@
 
 A sinusoid on the simulated bench, as `friction-bench study ladder --bench` runs it, under three loads; half as fast,
 too. By the friction curves, and by a study's model whose constants are those that the joint is simulated with: static
-friction at that load, and what the teeth lose. What is left to it is what motor and encoder do not tell: how the arm
-rattles in the free play, and the scatter of friction along the way.
+friction at that load, and what the teeth lose. What is left to it is what motor and encoder do not tell, above all how
+the arm rattles in the free play.
 """
 
 import sys
