@@ -53,6 +53,7 @@ class StudiedModel(Section):
     position_span_rad: float = quantity(..., "rad", "Range of position", gt=0)
     inertia_n_m_s2_rad: float = quantity(..., "N m s2/rad", "Of motor and arm", ge=0)
     load_inertia_scale: float = quantity(1.0, "", "Of the load, over that of a point at the tip", ge=0)
+    largest_effort_n_m: float = quantity(0.0, "N m", "Largest that it predicts for the trials; 0: not kept", ge=0)
 
 
 class FrictionSettings(Section):

@@ -97,6 +97,7 @@ def _studied(study_id: int, model_id: int, fit: Fit) -> StudiedModel:
         position_span_rad=scales.position_span,
         inertia_n_m_s2_rad=float(inertia[0]),
         load_inertia_scale=float(inertia[1]),
+        largest_effort_n_m=fit.dataset.trials[0].motion.largest_effort,
     )
 
 

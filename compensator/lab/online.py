@@ -32,6 +32,7 @@ class OnlineFriction:
         facts: of the joint; scales: of the study's trials.
         torque_n_m_a: joint torque per motor current, by the rig: what gravity is known by.
         own_n_m: moment of the arm's own weight at 90 degrees, by the rig.
+        largest_n_m: largest effort that the model predicts in the study's trials; 0 where nobody kept it.
     """
 
     terms: tuple[OnlineTerm, ...]
@@ -39,10 +40,11 @@ class OnlineFriction:
     scales: Scales
     torque_n_m_a: float
     own_n_m: float
+    largest_n_m: float = 0.0
 
     def current_a(
-        self, position_rad: FloatArray, speed_rad_s: FloatArray, acceleration_rad_s2: float, gravity_a: float,
-        temperature_c: float,
+        self, position_rad: FloatArray, speed_rad_s: FloatArray, acceleration_rad_s2: float, teeth_a: FloatArray,
+        gravity_a: float, temperature_c: float,
     ) -> FloatArray:  # fmt: skip
         """Current [A] at each of some moments in one direction, shape (n,).
 
@@ -50,14 +52,25 @@ class OnlineFriction:
             position_rad: shape (n,).
             speed_rad_s: shape (n,), of one sign.
             acceleration_rad_s2: of all of them.
+            teeth_a: what the teeth pass on, weight and inertia of the arm, shape (n,).
             gravity_a: current that the load takes at 90 degrees.
             temperature_c: NaN where it is not measured: effects of it count as none then.
         """
         motion = self._motion(position_rad, speed_rad_s, acceleration_rad_s2, gravity_a, temperature_c)
-        torque_n_m = np.zeros(len(position_rad))
+        carried_n_m = self._torque_n_m(motion, carried=True)
+        weight_a = gravity_a * np.sin(position_rad)
+        # the teeth's weight is that by the rig; the load of the fit is the model's own weight and springs
+        load_n_m = carried_n_m + self.torque_n_m_a * (teeth_a - weight_a)
+        torque_n_m = carried_n_m + self._torque_n_m(motion.having(load_effort=load_n_m), carried=False)
+        return np.asarray(torque_n_m / self.torque_n_m_a - weight_a)
+
+    def _torque_n_m(self, motion: Motion, carried: bool) -> FloatArray:
+        """Of the terms that are part of the load, or of the others, shape (n,)."""
+        torque_n_m = np.zeros(len(motion.position))
         for term in self.terms:
-            torque_n_m += np.nan_to_num(term.coefficients @ term.effect.columns(motion, term.shape))
-        return np.asarray(torque_n_m / self.torque_n_m_a - gravity_a * np.sin(position_rad))
+            if term.effect.carried is carried:
+                torque_n_m += np.nan_to_num(term.coefficients @ term.effect.columns(motion, term.shape))
+        return torque_n_m
 
     def _motion(
         self, position: FloatArray, speed: FloatArray, acceleration: float, gravity_a: float, temperature_c: float
@@ -65,8 +78,6 @@ class OnlineFriction:
         ones = np.ones(len(position))
         arm_m, nothing = self.facts.arm_m or 1.0, 0.0 * ones
         load_kg = max(gravity_a * self.torque_n_m_a - self.own_n_m, 0.0) / (STANDARD_GRAVITY_M_S2 * arm_m)
-        carried_kg_m2 = load_kg * arm_m**2 + (self.facts.arm_inertia_kg_m2 or 0.0)
-        load_n_m = gravity_a * self.torque_n_m_a * np.sin(position) + carried_kg_m2 * acceleration
         return Motion(
             facts=self.facts,
             conditions={"load_kg": load_kg},
@@ -76,13 +87,13 @@ class OnlineFriction:
             acceleration=acceleration * ones,
             jerk=nothing,
             direction=np.sign(speed),
-            load_effort=load_n_m,
+            load_effort=nothing,
             inertia_beyond=0.0,
             inertia=0.0,
             parting=nothing,
             predicted=nothing,
             effort_rate=nothing,
-            largest_effort=0.0,
+            largest_effort=self.largest_n_m,
             bend=nothing,
             temperature_c=temperature_c * ones,
             supply_v=np.nan * ones,

@@ -21,8 +21,8 @@ class MotionFriction(Protocol):
     """What a joint in motion takes beyond inertia and load, where more is known of it than friction curves."""
 
     def current_a(
-        self, position_rad: FloatArray, speed_rad_s: FloatArray, acceleration_rad_s2: float, gravity_a: float,
-        temperature_c: float,
+        self, position_rad: FloatArray, speed_rad_s: FloatArray, acceleration_rad_s2: float, teeth_a: FloatArray,
+        gravity_a: float, temperature_c: float,
     ) -> FloatArray:  # fmt: skip
         """Current [A] at each of some moments in one direction, shape (n,); the load's gear losses are in it."""
 

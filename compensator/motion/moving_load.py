@@ -7,12 +7,15 @@ arm's bearings, and what the teeth lose of it, d f. L is a load that the model k
 beyond that. The motor is measured; the arm is where the free play lets it be (`free_play`).
 """
 
+from collections.abc import Sequence
+from itertools import groupby
 from math import hypot, sqrt
+from operator import attrgetter
 
 import numpy as np
 
 from compensator.motion.gear_loss import GearLoss
-from compensator.motion.joint_model import JointUnderLoad, MotionFriction
+from compensator.motion.joint_model import FloatArray, JointUnderLoad, MotionFriction
 from compensator.motion.load_estimate import (
     ArmState,
     Branch,
@@ -24,6 +27,7 @@ from compensator.motion.load_estimate import (
 from compensator.motion.local_motion import Window, window
 
 BAND = 1.96  # standard deviations in half of a 95 % interval
+TOUCHING = 8  # cycles over which what the teeth carry is averaged
 TINY_RAD_S = 1e-9  # stands for the direction of a joint that has only just set off
 
 
@@ -86,10 +90,23 @@ def _by_study(
     ages_s = settings.period_s * (np.arange(len(positions)) - (len(positions) - 1) / 2.0)
     speeds = way * np.maximum(way * (motion.speed_rad_s + motion.acceleration_rad_s2 * ages_s), 0.0)
     friction = studied.current_a(
-        positions, np.where(speeds == 0.0, way * TINY_RAD_S, speeds), motion.acceleration_rad_s2, joint.gravity_a,
-        observation.temperature_c,
+        positions, np.where(speeds == 0.0, way * TINY_RAD_S, speeds), motion.acceleration_rad_s2,
+        _teeth_a(state.arms), joint.gravity_a, observation.temperature_c,
     )  # fmt: skip
     friction_a = averages.mean(friction.tolist())
     rotor_a = joint.rotor_inertia_a_s2_rad * motion.acceleration_rad_s2
     carried_a = _carried_a(joint, averages, state)
     return averages.mean_held(state.currents_a) - rotor_a - friction_a - carried_a, friction_a
+
+
+def _teeth_a(arms: Sequence[ArmState]) -> FloatArray:
+    """What the teeth passed on in each cycle [A], shape (n,), averaged over some cycles that they touch on one flank.
+
+    The counts of the encoder make a single one noisy, and friction goes by its size: the noise would not average out.
+    """
+    found = []
+    for _, touch in groupby(arms, attrgetter("side")):
+        torques_a = np.array([arm.teeth_a for arm in touch])
+        parts = np.array_split(torques_a, max(1, len(torques_a) // TOUCHING))
+        found += [np.full(len(part), part.mean()) for part in parts]
+    return np.concatenate(found)

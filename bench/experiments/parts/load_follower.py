@@ -122,11 +122,14 @@ def _of_study(
     per_a, length_m = torque_n_m_a(rig), rig.arm.length_m or 0.0
     friction = configuration.friction
     assert friction is not None  # its curves were given
+    rotor, arm = _before_and_behind_a_s2_rad(rig, studied.inertia_n_m_s2_rad / per_a)
     return JointModel(
         friction=friction.over_friction(),
         ratio=rig.gear.ratio or 1.0,
-        rotor_inertia_a_s2_rad=studied.inertia_n_m_s2_rad / per_a,
-        arm_inertia_a_s2_rad=tuple(studied.load_inertia_scale * one.load_kg * length_m**2 / per_a for one in curves),
+        rotor_inertia_a_s2_rad=rotor,
+        arm_inertia_a_s2_rad=tuple(
+            arm + studied.load_inertia_scale * one.load_kg * length_m**2 / per_a for one in curves
+        ),
         offsets_a=tuple(one.offset_a for one in curves),
         rise_offsets_a=tuple(one.rise_offset_a for one in curves),
         gravity_a=tuple(load_current_a(one.load_kg, RIGHT_ANGLE_RAD, rig) for one in curves),
@@ -164,6 +167,16 @@ def _rotor_inertia_a_s2_rad(rig: Rig) -> float:
     if rig.motor.rotor_inertia_kg_m2 is None or rig.motor.torque_constant_n_m_a is None or rig.gear.ratio is None:
         return 0.0
     return rig.motor.rotor_inertia_kg_m2 * rig.gear.ratio / rig.motor.torque_constant_n_m_a
+
+
+def _before_and_behind_a_s2_rad(rig: Rig, whole: float) -> tuple[float, float]:
+    """Current per joint acceleration of rotor and arm without load, which motion with the teeth closed tells as one.
+
+    In the free play the arm falls with its own share: by the rig where it says that, else all that is not rotor.
+    """
+    known = rig.arm.inertia_kg_m2
+    arm = max(whole - _rotor_inertia_a_s2_rad(rig), 0.0) if known is None else min(known / torque_n_m_a(rig), whole)
+    return whole - arm, arm
 
 
 def _arm_inertia_a_s2_rad(rig: Rig, curve: FrictionCurve, rotor: float) -> float:

@@ -33,4 +33,5 @@ def online_friction(studied: StudiedModel, rig: Rig) -> OnlineFriction:
         OnlineTerm(effect_named(one.effect), one.shape, np.array(one.coefficients)) for one in studied.effects
     )
     scales = Scales(0.0, studied.slow_rad_s, studied.fast_rad_s, studied.position_span_rad, 1.0)
-    return OnlineFriction(terms, facts, scales, per_a, load_current_a(0.0, np.pi / 2, rig) * per_a)
+    own_n_m = load_current_a(0.0, np.pi / 2, rig) * per_a
+    return OnlineFriction(terms, facts, scales, per_a, own_n_m, studied.largest_effort_n_m)
