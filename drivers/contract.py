@@ -315,3 +315,14 @@ class OwnBrake(Protocol):
             DriveStateError: the drive is not open.
             DriveConnectionError: it does not answer.
         """
+
+
+@runtime_checkable
+class OwnRamp(Protocol):
+    """A drive that brakes on a ramp of its own where it stops by itself; when it is opened, it sees that this is short.
+
+    Attributes:
+        highest_speed_rad_s: of the joint, from which it has to stop [rad/s].
+    """
+
+    highest_speed_rad_s: float

@@ -10,7 +10,7 @@ from bench.control.technician import PersonTechnician, SimulatedTechnician, Tech
 from bench.drives.far_joint import FarJoint
 from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.errors import ConfigurationError
-from drivers.contract import Drive
+from drivers.contract import Drive, OwnRamp
 
 Ask = Callable[[str], bool]
 """Shows a sentence to the person at the bench; returns True when it is done, False when the person gives up."""
@@ -44,6 +44,8 @@ def make_equipment(configuration: BenchConfiguration, ask: Ask = nobody) -> Equi
     """
     settings = configuration.drive
     drive: Drive = drive_kind(settings.kind).make(settings, configuration.rig)
+    if isinstance(drive, OwnRamp):
+        drive.highest_speed_rad_s = configuration.limits.speed_rad_s
     if isinstance(settings, RealDriveSettings):
         return Equipment(drive, _technician(settings, ask))
     if not isinstance(drive, Technician):

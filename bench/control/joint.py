@@ -67,6 +67,11 @@ class ControlledJoint:
         """Whether the stage has been powered and not been switched off again."""
         return self._mode is not _OFF
 
+    @property
+    def brakes(self) -> bool:
+        """Whether the drive brakes by itself, by the last sample."""
+        return self.reading.sample.status is Status.QUICK_STOP
+
     def begin(self) -> None:
         """Begin a trial with a sample taken with the power off: its time counts from there."""
         self.reading, self._origin_s = _NOTHING, 0.0

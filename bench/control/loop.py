@@ -17,7 +17,7 @@ from bench.control.cycle import Action, Reading
 from bench.control.ending import Outcome, OutcomeName, StopRequest
 from bench.control.joint import ControlledJoint
 from bench.control.joint_group import ActionT, JointGroup, ReadingT, SingleJoint, exchange_of
-from bench.control.late_cycles import LateCycles, braking_cycles
+from bench.control.late_cycles import BRAKING_S, LateCycles, braking_cycles
 from bench.control.limits import Guard
 from bench.control.power.brake_order import BrakeOrder
 from bench.control.power.torque_off import torque_off_reason
@@ -25,10 +25,11 @@ from bench.control.recorder import Recorder, Sink
 from bench.control.servo import CurrentServo
 from bench.errors import LimitTrip
 from bench.json_types import Value
-from drivers.contract import Drive, Status
+from drivers.contract import Drive
 from drivers.errors import DriveError
 
 WAKING_S = 1.0  # longest wait for a drive that nobody has asked for a while
+_STILL_BRAKES = f"the drive still braked {BRAKING_S:g} s after the stop, and its power was taken away: its ramp is slow"
 
 
 class ControlLoop(Generic[ActionT, ReadingT]):
@@ -226,6 +227,8 @@ class ControlLoop(Generic[ActionT, ReadingT]):
                 self._clock.wait()
                 if not self._braking_cycle(recorder, known, notes):
                     break
+            else:
+                notes += [f"{joint.prefix}{_STILL_BRAKES}" for joint in self._joints if joint.brakes]
         except BaseException as error:  # a second Ctrl-C, too: on to power-off
             notes += _unless_known("quick stop failed", error, known)
         return notes
@@ -245,7 +248,7 @@ class ControlLoop(Generic[ActionT, ReadingT]):
                 # a recorder that fails says so when it is closed; the joints have to brake meanwhile
                 with suppress(Exception):
                     recorder.row(self._group.row(self._group.off, self._group.reading()))
-        return any(joint.reading.sample.status is Status.QUICK_STOP for joint in answered)
+        return any(joint.brakes for joint in answered)
 
     def _close(self, procedure: Generator[Any, Any, Any], recorder: Recorder, ending: Outcome) -> Outcome:
         """Close the procedure and the recorder, whatever one of them raises."""

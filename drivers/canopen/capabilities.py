@@ -57,7 +57,7 @@ def probe(table: ObjectTable, settings: CanopenSettings, joint: JointScale, iden
     profile = choose_profile(settings.device, settings.profile, identity.vendor_id)
     units = read_units(table, settings, joint.counts_per_turn)
     rated_a = _rated_current_a(table, settings, profile)
-    scale = DriveScale(joint, rated_a, units.velocity_rad_s)
+    scale = DriveScale(joint, rated_a, units.velocity_rad_s, units.acceleration_rad_s2)
     measured = (profile.current, profile.duty, profile.supply, profile.temperature, TORQUE, VELOCITY)
     asked = [*(item for item in measured if item is not None), TORQUE_OFFSET, VELOCITY_OFFSET]
     present = frozenset(item for item in asked if table.has(item, _MEASURED))

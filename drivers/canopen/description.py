@@ -67,6 +67,7 @@ def describe(settings: CanopenSettings, session: Session | None) -> Description:
 def _notes(session: Session) -> Iterator[str]:
     """What whoever opens the drive should know."""
     yield f"Watchdog: {session.guard.words}."
+    yield session.stopping.words
     if not session.guard.is_told:
         yield "Its dictionary does not tell that reaction: it is tried each time before the first motion."
     if session.current_limit:

@@ -14,6 +14,7 @@ from drivers.canopen.cia402.drive_units import UnitRow
 from drivers.canopen.cia402.homing import HomingDemand
 from drivers.canopen.cia402.power_stage import PowerStage
 from drivers.canopen.cia402.state_machine import State, state_of, status_of, towards_standstill
+from drivers.canopen.cia402.stopping import USUAL_SPEED_RAD_S
 from drivers.canopen.description import describe
 from drivers.canopen.session import Session
 from drivers.canopen.settings import CanopenSettings
@@ -29,6 +30,7 @@ class CanopenDrive:
     Attributes:
         settings: as given.
         port: the bus; another drive's where both are on one, see `share_buses`.
+        highest_speed_rad_s: of the joint; from there the drive's own quick stop has to end soon [rad/s].
     """
 
     def __init__(self, settings: CanopenSettings, joint: JointScale) -> None:
@@ -36,6 +38,7 @@ class CanopenDrive:
         self.settings = settings
         self._device = settings.device
         self.port = BusPort(settings.bus)
+        self.highest_speed_rad_s = USUAL_SPEED_RAD_S
         self._link: CanLink | None = None
         self._session: Session | None = None
         self._power: PowerStage | None = None
@@ -74,7 +77,7 @@ class CanopenDrive:
         self._link = CanLink(self.port, self._device)
         try:
             self._link.open()
-            self._session = Session(self._link, self.settings, self._joint, period_s)
+            self._session = Session(self._link, self.settings, self._joint, period_s, self.highest_speed_rad_s)
             self._power = PowerStage(self._session)
             check_bus_load(self.settings, (link.load for link in self.port.links), period_s)
             self._power.forgive_lost_host()
@@ -123,15 +126,19 @@ class CanopenDrive:
 
         Raises:
             DriveConnectionError: the drive does not confirm it; its watchdog stops it.
+            DriveStateError: it did not obey, and was reset.
         """
         _, power = self._opened("disable")
         self._mode, self._stopping = Mode.OFF, False
         power.switch_off()
 
     def quick_stop(self) -> None:
-        """Brake on the drive's quick-stop ramp during the exchanges that follow; the drive then powers off."""
-        self._opened("quick_stop")
-        self._mode, self._stopping = Mode.OFF, True
+        """Brake on the drive's quick-stop ramp during the exchanges that follow; the drive then powers off.
+
+        Where that ramp is not known to end soon, the power goes off at once.
+        """
+        session, _ = self._opened("quick_stop")
+        self._mode, self._stopping = Mode.OFF, session.stopping.on_ramp
         self._exchange_off()
 
     def set_brake(self, released: bool, confirmed: bool = True) -> None:

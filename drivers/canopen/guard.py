@@ -20,8 +20,6 @@ from drivers.canopen.cia301.objects import (
     GUARD_TIME,
     LIFE_TIME_FACTOR,
     PRODUCER_HEARTBEAT,
-    QUICK_STOP_DECELERATION,
-    QUICK_STOP_OPTION,
     DataType,
     DriveObject,
 )
@@ -30,8 +28,6 @@ from drivers.canopen.settings import CanopenSettings
 from drivers.errors import DriveConfigurationError, DriveError, WatchdogError
 
 _QUICK_STOP, _DISABLE, _FAULT = 3, 2, 1  # 0x6007
-_RAMP_THEN_OFF, _OFF_AT_ONCE = 2, 0  # 0x605A: on the quick-stop ramp, then power off; power off
-_ENDS_IN_OFF: Final = range(5)  # codes of 0x605A that end in power off; 5 .. 8 stay in quick stop active
 _STAY_OPERATIONAL: Final = 1  # 0x1029:01: keep sending TPDOs, so that the fault is heard of
 _LIFE_FACTOR: Final = 4
 _SIGNS: Final = 4  # of life that the host gives while the drive waits for one
@@ -68,17 +64,21 @@ class Guard:
         link: open.
         settings: its time-out.
         host_id: node ID of this host.
+        quick_stop_ends: whether a quick stop that nobody watches ends soon in power-off.
 
     Attributes:
         armed: whether it watches now.
         tried: whether it has been seen to stop the drive since opening.
     """
 
-    def __init__(self, table: ObjectTable, link: CanLink, settings: CanopenSettings, host_id: int) -> None:
+    def __init__(
+        self, table: ObjectTable, link: CanLink, settings: CanopenSettings, host_id: int, quick_stop_ends: bool
+    ) -> None:
         self._table = table
         self._link = link
         self._settings = settings
         self._host_id = host_id
+        self._quick_stop_ends = quick_stop_ends
         self._kind = Kind.IN_DRIVE
         self._reaction = Reaction(False, "")
         self._timers: tuple[DriveObject, ...] = ()
@@ -211,7 +211,7 @@ class Guard:
     def _prepare_reaction(self) -> Reaction:
         if self._table.ask(CONNECTION_LOSS_OPTION, _PURPOSE) is None:
             return Reaction(False, f"what it does by itself, for it has no {CONNECTION_LOSS_OPTION}")
-        codes = (_QUICK_STOP, _DISABLE, _FAULT) if self._prepare_quick_stop() else (_DISABLE, _FAULT)
+        codes = (_QUICK_STOP, _DISABLE, _FAULT) if self._quick_stop_ends else (_DISABLE, _FAULT)
         words = {_QUICK_STOP: "quick stop", _DISABLE: "power off", _FAULT: "fault"}
         for code in codes:
             if self._table.try_set(CONNECTION_LOSS_OPTION, code, _PURPOSE):
@@ -221,16 +221,6 @@ class Guard:
             f"the watchdog cannot be set: {CONNECTION_LOSS_OPTION} takes none of quick stop (3), power off (2), fault "
             f"(1): {self._table.outcome(CONNECTION_LOSS_OPTION, _PURPOSE)}. Without it the drive must not move",
         )
-
-    def _prepare_quick_stop(self) -> bool:
-        """Have quick stops end in power off; tell whether they do."""
-        # a ramp of 0 brakes nothing
-        ramp = self._table.ask(QUICK_STOP_DECELERATION, "quick stop")
-        wanted = _OFF_AT_ONCE if ramp == 0 else _RAMP_THEN_OFF
-        before = self._table.ask(QUICK_STOP_OPTION, "quick stop")
-        if before is None:
-            return ramp != 0  # CiA 402: by default it brakes on the ramp, then switches off
-        return self._table.try_set(QUICK_STOP_OPTION, wanted, "quick stop") or (ramp != 0 and before in _ENDS_IN_OFF)
 
 
 def heartbeat_ms(settings: CanopenSettings) -> int:

@@ -21,6 +21,7 @@ from drivers.canopen.cia402.bits import OUTPUT_MASK, OUTPUTS, BrakeBit, download
 from drivers.canopen.cia402.limits import set_limits
 from drivers.canopen.cia402.measurement import Measurement
 from drivers.canopen.cia402.state_machine import DISABLE_VOLTAGE
+from drivers.canopen.cia402.stopping import set_up_stopping
 from drivers.canopen.guard import Guard, heartbeat_ms
 from drivers.canopen.meeting import meet
 from drivers.canopen.process_setup import set_interpolation, set_up_pdos
@@ -30,7 +31,7 @@ from drivers.contract import Sample, Status
 from drivers.errors import DriveConnectionError, DriveError
 from drivers.joint import JointScale
 
-_START, _PRE_OPERATIONAL = 0x01, 0x80  # NMT commands
+_START, _PRE_OPERATIONAL, _RESET = 0x01, 0x80, 0x81  # NMT commands
 _NMT_S: Final = 1.0  # longest wait for an NMT state, on top of a heartbeat
 _TRIAL_CYCLES: Final = 15
 _TRIAL_S: Final = 0.5  # a host that is held up tries for longer: the quickest cycle counts
@@ -47,12 +48,15 @@ class Session:
         settings: of the drive.
         joint: on it.
         period_s: control period [s].
+        speed_rad_s: highest of the joint, from which the drive has to stop soon [rad/s].
 
     Raises:
         DriveError: at the first step that fails. The power stage is off then, or was never on.
     """
 
-    def __init__(self, link: CanLink, settings: CanopenSettings, joint: JointScale, period_s: float) -> None:
+    def __init__(
+        self, link: CanLink, settings: CanopenSettings, joint: JointScale, period_s: float, speed_rad_s: float
+    ) -> None:
         self.link = link
         self.settings = settings
         node_id = settings.node_id
@@ -71,7 +75,8 @@ class Session:
         self.monitor.restarted = False  # it may have been switched on just now; from here on it must stay so
         self._codes = error_codes(identity.vendor_id)
         self.found: Capabilities = probe(self.table, settings, joint, identity)
-        self.guard = Guard(self.table, link, settings, self.host_id)
+        self.stopping = set_up_stopping(self.table, self.found.scale, speed_rad_s)
+        self.guard = Guard(self.table, link, settings, self.host_id, self.stopping.ends)
         self.guard.prepare()
         self.torque_off()
         self._sends_heartbeats = not self.guard.silences_heartbeat and self.table.try_set(
@@ -105,6 +110,10 @@ class Session:
         self._nmt(_START)
         if self._sends_heartbeats:
             self.await_until(lambda: self.monitor.state is NmtState.OPERATIONAL, "NMT state OPERATIONAL")
+
+    def reset(self) -> None:
+        """Have the drive begin anew, which takes its power away whatever state it is in. It is to be opened again."""
+        self._nmt(_RESET)
 
     def run(self, cob_id: int, payload: bytes) -> bool:
         """One cycle, with all that has to be looked after in it; tell whether it was answered in time.

@@ -46,6 +46,7 @@ def test_a_canopen_drive_is_made_of_flat_settings():
     assert isinstance(technician, PersonTechnician)
     assert drive.describe().device == "/dev/absent node 5"
     assert drive.describe().watchdog_s == pytest.approx(0.2)
+    assert drive.highest_speed_rad_s == configured(CANOPEN).limits.speed_rad_s
     with pytest.raises(DriveConnectionError, match=r"the bus slcan /dev/absent does not open"):
         drive.open(0.01)
 

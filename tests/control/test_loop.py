@@ -9,7 +9,7 @@ import pytest
 from bench.config.sections import Limits
 from bench.control.cycle import OFF, Action
 from bench.control.ending import Outcome
-from drivers.contract import Ages, Command, Mode
+from drivers.contract import Ages, Command, Mode, Status
 from tests.control.fake_drive import FakeDrive
 from tests.control.loops import PERIOD_S, PUSH, on_each, push, run
 
@@ -92,6 +92,22 @@ def test_each_limit_trips(setup, wrong, message):
     for one in ran.drives.values():
         assert one.calls[-2:] == ["quick_stop", "disable"]
     assert len(ran.rows["time_s"]) == 11  # the sample that tripped is on record, and that of the braking
+
+
+@on_each
+def test_a_drive_that_brakes_for_too_long_is_told(setup):
+    drive = FakeDrive(alter=_brakes_from(10))
+    ran = run(setup, drive, push(setup, 1000))
+    assert f"; {setup.prefix}the drive still braked 0.5 s after the stop, and its power" in ran.outcome.reason
+    assert drive.calls[-2:] == ["quick_stop", "disable"]
+    assert len(ran.rows["time_s"]) == 10 + 0.5 / PERIOD_S
+
+
+def _brakes_from(exchange):
+    """A limit is passed, and the drive brakes on."""
+    return lambda cycle, sample: (
+        sample._replace(current_a=2.5, status=Status.QUICK_STOP) if cycle >= exchange else sample
+    )
 
 
 @on_each

@@ -2,7 +2,8 @@
 
 Position units a motor turn: feed constant 0x6092 / gear ratio 0x6091; or the angle that 0x60A8 names / gear ratio; or,
 where positions are increments, the encoder resolution 0x608F. Velocity: the unit that 0x60A9 names, or position units
-a second times the velocity factor 0x6096. Whatever contradicts the configuration is refused, and nothing is guessed.
+a second times the velocity factor 0x6096. Acceleration: the unit that 0x60AA names, or position units through the
+acceleration factor 0x6097. Whatever contradicts the configuration is refused, and nothing is guessed.
 """
 
 from dataclasses import dataclass
@@ -10,6 +11,9 @@ from math import isclose, nan, pi
 
 from drivers.canopen.cia301.object_table import ObjectTable
 from drivers.canopen.cia301.objects import (
+    ACCELERATION_DIVISOR,
+    ACCELERATION_FACTOR,
+    ACCELERATION_UNIT,
     ENCODER_INCREMENTS,
     ENCODER_REVOLUTIONS,
     FEED,
@@ -23,6 +27,7 @@ from drivers.canopen.cia301.objects import (
     DriveObject,
 )
 from drivers.canopen.cia402.units import (
+    acceleration_unit_rad_s2,
     angle_rad,
     is_increments,
     velocity_unit_code,
@@ -57,11 +62,13 @@ class DriveUnits:
 
     Attributes:
         velocity_rad_s: one count of velocity at the motor [rad/s]; NaN where neither drive nor settings tell.
+        acceleration_rad_s2: one count of acceleration at the motor [rad/s2]; NaN where the drive does not tell.
         rows: for a person to compare.
         told_counts: counts of a motor turn, by the drive; NaN where it tells none.
     """
 
     velocity_rad_s: float
+    acceleration_rad_s2: float
     rows: tuple[UnitRow, ...]
     told_counts: float
 
@@ -95,6 +102,7 @@ def read_units(table: ObjectTable, settings: CanopenSettings, counts_per_turn: f
     velocity_rad_s = _velocity(velocities, settings, counts_per_turn)
     return DriveUnits(
         velocity_rad_s,
+        _acceleration(table, gear, counts_per_turn),
         (
             UnitRow("counts per motor turn", _words(positions), counts_per_turn),
             UnitRow("one count of velocity at the motor in rad/s", _words(velocities), velocity_rad_s),
@@ -165,6 +173,18 @@ def _velocity(told: list[_Told], settings: CanopenSettings, counts_per_turn: flo
             "one that is right",
         )
     return told[0].value if told else nan
+
+
+def _acceleration(table: ObjectTable, gear: float, counts_per_turn: float) -> float:
+    """One count of acceleration at the motor [rad/s2]; NaN where the drive tells no unit that is known here."""
+    code = table.ask(ACCELERATION_UNIT, _PURPOSE)
+    if code:
+        unit_rad_s2 = acceleration_unit_rad_s2(code, counts_per_turn)
+        return nan if unit_rad_s2 is None else unit_rad_s2 * (1.0 if is_increments(code) else gear)
+    factor = _ratio(table, ACCELERATION_FACTOR, ACCELERATION_DIVISOR)
+    if factor is not None and factor != 1.0:  # one is what stands there before anybody has set it
+        return 2.0 * pi / counts_per_turn / factor
+    return nan
 
 
 def _ratio(table: ObjectTable, over: DriveObject, under: DriveObject) -> float | None:

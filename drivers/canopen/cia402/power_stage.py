@@ -7,7 +7,7 @@ from time import perf_counter
 from typing import Final
 
 from drivers.canopen.cia301.heartbeat import NmtState
-from drivers.canopen.cia301.objects import CONTROLWORD
+from drivers.canopen.cia301.objects import CONTROLWORD, STATUSWORD
 from drivers.canopen.cia402.demand import Demand
 from drivers.canopen.cia402.homing import HomingDemand, set_up
 from drivers.canopen.cia402.mode_switch import ModeSwitch
@@ -29,6 +29,7 @@ from drivers.refusal import not_cleared
 SWITCH_OFF_S: Final = 0.5
 _HOLD_S: Final = 0.03  # of each level of the reset bit at first: a drive looks at it every 1 .. 20 ms
 _LONGEST_HOLD_S: Final = 0.5
+_LOOK_S: Final = 0.1  # that a drive has to take a controlword
 _PAUSE_S: Final = 0.001  # between SYNCs: a drive needs a moment for a transition
 _POWERED: Final = (State.ENABLED, State.QUICK_STOP, State.FAULT_REACTION)
 
@@ -91,12 +92,12 @@ class PowerStage:
 
         Raises:
             DriveConnectionError: the drive does not confirm it. Its watchdog stops it.
+            DriveStateError: it did not obey, as one that brakes in a fault does not; it was reset.
         """
         session = self._session
         try:
-            confirmed = _repeat(self._off_once, SWITCH_OFF_S)
-            if not confirmed:
-                session.access.write(CONTROLWORD, DISABLE_VOLTAGE)  # another way, should SYNC or PDOs be at fault
+            if not _repeat(self._off_once, SWITCH_OFF_S):
+                self._force_off()
         except DriveConnectionError as error:
             raise DriveConnectionError(
                 self._device,
@@ -230,6 +231,16 @@ class PowerStage:
             session.start()  # one that sends no heartbeats does not tell that it has left OPERATIONAL
         if not _repeat(lambda: self._answers(DISABLE_VOLTAGE), session.settings.answer_s):
             raise DriveConnectionError(self._device, "does not answer SYNC; check the cable, then open it again")
+
+    def _force_off(self) -> None:
+        """Another way, should SYNC or PDOs be at fault; and where the drive brakes on in a fault, its reset."""
+        access = self._session.access
+        access.write(CONTROLWORD, DISABLE_VOLTAGE)
+        if not _repeat(lambda: state_of(access.read(STATUSWORD)) not in _POWERED, _LOOK_S):
+            self._session.reset()
+            raise DriveStateError(
+                self._device, f"state '{self.state.value}' did not end on power-off; the drive was reset (NMT)"
+            )
 
     def _answers(self, controlword: int) -> bool:
         return self._session.idle(controlword)

@@ -1,7 +1,7 @@
 """Between what the drive counts at the motor and what the bench sees of the joint. Pure."""
 
 from dataclasses import dataclass
-from math import isnan
+from math import isnan, nan
 
 from drivers.canopen.cia301.objects import DriveObject
 from drivers.joint import JointScale
@@ -17,16 +17,23 @@ class DriveScale:
         joint: counts, gear ratio, signs, zero.
         rated_current_a: motor current of 1000 permille [A]; NaN where unknown.
         velocity_unit_rad_s: one count of velocity at the motor [rad/s]; NaN where unknown.
+        acceleration_unit_rad_s2: one count of acceleration at the motor [rad/s2]; NaN where the drive does not tell.
     """
 
     joint: JointScale
     rated_current_a: float
     velocity_unit_rad_s: float
+    acceleration_unit_rad_s2: float = nan
 
     @property
     def velocity_rad_s(self) -> float:
         """One count of velocity at the joint [rad/s], with the encoder's sign."""
         return self.joint.encoder_sign * self.velocity_unit_rad_s / self.joint.gear_ratio
+
+    @property
+    def acceleration_rad_s2(self) -> float:
+        """One count of acceleration at the joint [rad/s2], with the encoder's sign."""
+        return self.joint.encoder_sign * self.acceleration_unit_rad_s2 / self.joint.gear_ratio
 
     def current_a(self, item: DriveObject) -> float:
         """One count of an object that tells a motor current [A], without sign."""

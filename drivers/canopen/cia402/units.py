@@ -1,4 +1,4 @@
-"""Units of CiA 402 objects: 0x60A8 and 0x60A9 (codes of CiA 303-2), 0x60C2. Pure."""
+"""Units of CiA 402 objects: 0x60A8, 0x60A9 and 0x60AA (codes of CiA 303-2), 0x60C2. Pure."""
 
 from math import pi
 
@@ -7,6 +7,7 @@ VELOCITY_UNITS = ("rpm", "0.1 rpm", "0.01 rpm", "0.001 rpm", "counts/s", "rad/s"
 
 _REVOLUTION, _INCREMENT, _RADIAN, _DEGREE = 0xB4, 0xB5, 0x10, 0x41
 _TIMES_S = {0x03: 1.0, 0x47: 60.0}
+_SECOND, _SECOND_SQUARED, _RPM = 0x03, 0x57, 0xC0  # of accelerations; maxon has "rpm a second"
 
 _CODES = {
     "rpm": 0x00B4_4700,
@@ -41,8 +42,29 @@ def velocity_unit_rad_s(code: int, counts_per_turn: float) -> float | None:
         None where the unit is no angle, or no time that is known.
     """
     time_s = _TIMES_S.get(code >> 8 & 0xFF)
-    unit_rad = 10.0 ** _exponent(code) * 2 * pi / counts_per_turn if is_increments(code) else angle_rad(code)
-    return None if unit_rad is None or time_s is None else float(unit_rad / time_s)
+    unit_rad = _turned_rad(code, counts_per_turn)
+    return None if unit_rad is None or time_s is None else unit_rad / time_s
+
+
+def acceleration_unit_rad_s2(code: int, counts_per_turn: float) -> float | None:
+    """What one count of acceleration is worth by 0x60AA [rad/s2], of the shaft; of increments, at the motor.
+
+    Args:
+        code: power of ten (signed), numerator, denominator, 0.
+        counts_per_turn: encoder counts of a motor turn.
+
+    Returns:
+        None where the unit is not known.
+    """
+    numerator, denominator = code >> 16 & 0xFF, code >> 8 & 0xFF
+    if (numerator, denominator) == (_RPM, _SECOND):
+        return float(10.0 ** _exponent(code) * 2 * pi / 60.0)
+    return _turned_rad(code, counts_per_turn) if denominator == _SECOND_SQUARED else None
+
+
+def _turned_rad(code: int, counts_per_turn: float) -> float | None:
+    """What one count turns [rad]; None where it is no angle."""
+    return float(10.0 ** _exponent(code) * 2 * pi / counts_per_turn) if is_increments(code) else angle_rad(code)
 
 
 def _exponent(code: int) -> int:

@@ -1,6 +1,6 @@
 """Units by the drive's own objects, beside the rig's: computed, compared, refused where they contradict."""
 
-from math import isnan, pi
+from math import isnan, nan, pi
 
 import pytest
 
@@ -100,3 +100,20 @@ def test_a_drive_that_contradicts_itself_is_decided_by_the_settings():
 def test_a_velocity_unit_that_contradicts_the_drive_is_refused():
     with pytest.raises(DriveConfigurationError, match=r"which is rpm.*the settings say 0.1 rpm"):
         units(4096, {0x60A9: RPM}, velocity_unit="0.1 rpm")
+
+
+@pytest.mark.parametrize(
+    ("objects", "told_rad_s2"),
+    [
+        ({}, nan),
+        ({0x60A9: RPM}, nan),  # of velocity
+        ({0x60AA: 0x00B55700}, 2.0 * pi / 4096),  # increments
+        ({0x60AA: 0xFAB45700, 0x6091: (20, 1)}, 20.0 * 2e-6 * pi),  # millionths of a turn of the shaft
+        ({0x60AA: 0x00C00300}, 2.0 * pi / 60.0),  # rpm a second
+        ({0x60AA: 0x00014700}, nan),
+        ({0x6097: (1, 1)}, nan),  # as delivered
+        ({0x6097: (10, 1)}, 0.1 * 2.0 * pi / 4096),
+    ],
+)
+def test_the_unit_of_accelerations_is_what_the_drive_tells(objects, told_rad_s2):
+    assert units(4096, objects).acceleration_rad_s2 == pytest.approx(told_rad_s2, nan_ok=True)

@@ -7,6 +7,7 @@ from drivers.canopen.cia301.objects import POSITION
 from drivers.contract import Mode, Watchdog
 from drivers.errors import WatchdogError
 from sim_backend.devices.canopen.conduct import Conduct
+from sim_backend.devices.canopen.objects.entry import Access
 from tests.drivers.dictionaries.attempt import PERIOD_S, RATED_A, attempt, device, host
 from tests.drivers.dictionaries.traits import TRAITS, Trait
 
@@ -62,7 +63,8 @@ def test_a_drive_that_does_not_tell_its_rated_current_asks_for_it(name, without,
 
 
 def test_a_drive_that_brakes_for_long_is_not_said_to_have_its_cause_still(tmp_path) -> None:
-    sheet = Trait(without=(0x6007,), default={(0x6085, 0): 200}).write(tmp_path, "slow-ramp")
+    held = {(index, 0): Access.RO for index in (0x6085, 0x605E)}
+    sheet = Trait(without=(0x6007,), default={(0x6085, 0): 200}, access=held).write(tmp_path, "slow-ramp")
     result = attempt(sheet)
     assert result.moved
     assert "cannot be cleared: 0x8130" in result.refusal

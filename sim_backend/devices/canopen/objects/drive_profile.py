@@ -8,12 +8,13 @@ POSITION_UNIT_INCREMENTS = 0x00B50000
 NO_WINDOW = 0xFFFFFFFF
 
 
-def drive_profile(modes: int, velocity_unit: int, quick_stop: int) -> list[Object]:
+def drive_profile(modes: int, velocity_unit: int, acceleration_unit: int, quick_stop: int) -> list[Object]:
     """Return them.
 
     Args:
         modes: 0x6502.
         velocity_unit: 0x60A9.
+        acceleration_unit: 0x60AA, which is that of velocity a second.
         quick_stop: default of 0x605A.
     """
     return [
@@ -46,6 +47,7 @@ def drive_profile(modes: int, velocity_unit: int, quick_stop: int) -> list[Objec
         variable(0x6086, "Motion profile type", I16, RW, 0, low=0, high=0),  # trapezoid
         variable(0x60A8, "SI unit position", U32, RO, POSITION_UNIT_INCREMENTS),
         variable(0x60A9, "SI unit velocity", U32, RO, velocity_unit),
+        variable(0x60AA, "SI unit acceleration", U32, RO, acceleration_unit),
         variable(0x60B1, "Velocity offset", I32, RW, mappable=True),
         variable(0x60B2, "Torque offset", I16, RW, mappable=True),
         variable(0x60F4, "Following error actual value", I32, RO, mappable=True),

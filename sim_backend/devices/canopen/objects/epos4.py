@@ -12,13 +12,13 @@ from sim_backend.devices.canopen.objects.family import Family, Rating, mode_bits
 
 RO, RW = Access.RO, Access.RW
 MAXON = 0x000000FB
-VELOCITY_UNIT_RPM = 0x00B44700
+VELOCITY_UNIT_RPM, ACCELERATION_UNIT_RPM_PER_S = 0x00B44700, 0x00C00300
 _MODES = frozenset({1, 8, 10})
 _NAME = "EPOS4-like drive, simulated"
 
 
 def _objects(rating: Rating) -> list[Object]:
-    profile = drive_profile(mode_bits(_MODES), VELOCITY_UNIT_RPM, quick_stop=6)
+    profile = drive_profile(mode_bits(_MODES), VELOCITY_UNIT_RPM, ACCELERATION_UNIT_RPM_PER_S, quick_stop=6)
     defaults = {
         0x6007: 3,
         0x6076: round(rating.torque_n_m * 1e6),  # uN m

@@ -7,7 +7,7 @@ from sim_backend.devices.canopen.objects.entry import Access, Entry, Object, rec
 from sim_backend.devices.canopen.objects.family import Family, Rating, increments_per_s, mode_bits, with_defaults
 
 RO, RW = Access.RO, Access.RW
-VELOCITY_UNIT_INCREMENTS_PER_S = 0x00B50300
+VELOCITY_UNIT_INCREMENTS_PER_S, ACCELERATION_UNIT_INCREMENTS_PER_S2 = 0x00B50300, 0x00B55700
 _MODES = frozenset({1, 3, 4, 8, 9, 10})
 _NAME = "friction-bench CiA 402 drive, simulated"
 
@@ -15,7 +15,8 @@ _NAME = "friction-bench CiA 402 drive, simulated"
 def _objects(rating: Rating) -> list[Object]:
     peak = round(rating.peak_a / rating.current_a * 1000.0)
     turn = rating.counts_per_turn
-    profile = drive_profile(mode_bits(_MODES), VELOCITY_UNIT_INCREMENTS_PER_S, quick_stop=2)
+    units = VELOCITY_UNIT_INCREMENTS_PER_S, ACCELERATION_UNIT_INCREMENTS_PER_S2
+    profile = drive_profile(mode_bits(_MODES), *units, quick_stop=2)
     defaults = {
         0x6076: max(round(rating.torque_n_m * 1e3), 1),  # mN m
         0x6081: round(10.0 * turn),
