@@ -83,9 +83,9 @@ def test_a_measured_supply_hides_nothing_of_the_sag_and_a_nominal_one_all():
 
 
 def test_the_evidence_grows_with_the_size_and_is_none_without_the_channel():
-    small, large = (
-        evidence(short(draw_joint(9, ("tooth_loss",), (size,))), "tooth_loss").ratio for size in (0.02, 0.2)
-    )
+    loose, tight = (short(draw_joint(9, ("tooth_loss",), (size,))) for size in (0.02, 0.2))
+    floor = floor_of(loose, "tooth_loss")  # of the same joint without it
+    small, large = (evidence(one, "tooth_loss", floor).ratio for one in (loose, tight))
     winding = short(draw_joint(9, ("hot_winding",), (1.0,)))
     control = winding.control._replace(voltage_drive=False)
     by_current = replace(winding, sensors=replace(winding.sensors, effort="current"), control=control)
@@ -144,7 +144,9 @@ def test_a_spring_stands_out_by_what_the_weight_does_not_take_of_its_torque():
     share = spring * per_n_m * rows.angle[rows.moving] * weight
     left = share - base @ np.linalg.lstsq(base, share, rcond=None)[0]
 
-    assert evidence(joint, "spring").ratio == pytest.approx(float(np.sqrt(np.mean(left**2))), rel=0.1, abs=NOTHING)
+    assert evidence(joint, "spring", floor).ratio == pytest.approx(
+        float(np.sqrt(np.mean(left**2))), rel=0.1, abs=NOTHING
+    )
 
 
 def test_the_laws_of_a_joint_stand_out_where_no_textbook_has_them():

@@ -42,16 +42,15 @@ def store(url) -> Iterator[Store]:
         yield store
 
 
-@pytest.fixture
-def lab(store, url) -> Iterator[LabProcesses]:
-    found = LabProcesses(url)
-    yield found
-    found.close()
+@pytest.fixture(scope="module")
+def others() -> set[int]:
+    """Processes that are not this lab's."""
+    return lab_processes()
 
 
 @pytest.fixture(scope="module")
-def kept(store, url) -> Iterator[LabProcesses]:
-    """One for those that end none of its processes: each takes seconds to start."""
+def lab(store, url, others) -> Iterator[LabProcesses]:
+    """One for all: each of its processes takes seconds to start, and it starts another where one has ended."""
     found = LabProcesses(url)
     yield found
     found.close()
@@ -78,33 +77,31 @@ def lab_processes() -> set[int]:
     return {one for one in children() if b"spawn_main" in Path(f"/proc/{one}/cmdline").read_bytes()}
 
 
-def test_it_answers_as_the_lab_of_this_process_does(kept, store, experiment_id):
-    found = kept.call(create_study, "arm", [experiment_id], hold_out=["repeat=2"])
+def test_it_answers_as_the_lab_of_this_process_does(lab, store, experiment_id):
+    found = lab.call(create_study, "arm", [experiment_id], hold_out=["repeat=2"])
     here = LabHere(store)
-    assert kept.call(study_names) == here.call(study_names)
+    assert lab.call(study_names) == here.call(study_names)
     study_id = found.study_id
-    assert kept.call(compare, study_id).model_dump_json() == here.call(compare, study_id).model_dump_json()
+    assert lab.call(compare, study_id).model_dump_json() == here.call(compare, study_id).model_dump_json()
 
 
-def test_its_errors_are_those_of_the_lab(kept):
+def test_its_errors_are_those_of_the_lab(lab):
     with pytest.raises(NotFoundError, match="99"):
-        kept.call(describe, 99)
-    assert kept.call(study_names) is not None  # the process goes on
+        lab.call(describe, 99)
+    assert lab.call(study_names) is not None  # the process goes on
 
 
-def test_it_lets_other_programs_go_first_and_is_used_again(lab):
-    before = lab_processes()
+def test_it_lets_other_programs_go_first_and_is_used_again(lab, others):
     lab.call(study_names)
     lab.call(study_names)
-    (process,) = lab_processes() - before
+    (process,) = lab_processes() - others
     ours = os.getpriority(os.PRIO_PROCESS, 0)
     assert os.getpriority(os.PRIO_PROCESS, process) == min(ours + NICENESS, 19)
 
 
-def test_one_that_was_killed_is_said_and_another_one_answers(lab):
-    before = lab_processes()
+def test_one_that_was_killed_is_said_and_another_one_answers(lab, others):
     lab.call(study_names)
-    (process,) = lab_processes() - before
+    (process,) = lab_processes() - others
     os.kill(process, signal.SIGKILL)
     wait_for(lambda: process not in lab_processes(), 10.0)
     with pytest.raises(LabEndedError, match="ask again"):
@@ -112,7 +109,8 @@ def test_one_that_was_killed_is_said_and_another_one_answers(lab):
     assert lab.call(study_names)
 
 
-def test_the_end_of_the_service_does_not_wait_for_a_search(lab, store, experiment_id):
+def test_the_end_of_the_service_does_not_wait_for_a_search(url, store, experiment_id):
+    lab = LabProcesses(url)
     study_id = LabHere(store).call(create_study, "long", [experiment_id], hold_out=["repeat=2"]).study_id
     before = lab_processes()
     ended = []
@@ -135,8 +133,7 @@ def test_the_end_of_the_service_does_not_wait_for_a_search(lab, store, experimen
         lab.call(study_names)
 
 
-def test_what_is_given_up_is_ended_and_the_next_call_is_answered(lab):
-    before = lab_processes()
+def test_what_is_given_up_is_ended_and_the_next_call_is_answered(lab, others):
     asker, failures = Asker(), []
 
     def wait_long() -> None:
@@ -152,7 +149,7 @@ def test_what_is_given_up_is_ended_and_the_next_call_is_answered(lab):
     thread.join(20.0)
     assert not thread.is_alive()
     assert len(failures) == 1
-    assert lab_processes() <= before
+    assert lab_processes() <= others
     assert lab.call(study_names)
     with pytest.raises(LabEndedError, match="has gone"):
         lab.call_for(asker, study_names)  # nor does it begin
@@ -164,9 +161,8 @@ def sleeping(_store: Store, time_s: float) -> None:
     time.sleep(time_s)
 
 
-def test_a_broken_connection_ends_what_was_computed_for_it(store, url):
+def test_a_broken_connection_ends_what_was_computed_for_it(lab, others):
     """Through the service: the process of the lab is gone soon after the one who asked."""
-    lab = LabProcesses(url)
     app = FastAPI()
     app.state.lab = lab
     compute.install(app)
@@ -175,12 +171,10 @@ def test_a_broken_connection_ends_what_was_computed_for_it(store, url):
     async def long(request: Request) -> None:
         await compute.in_lab(request, sleeping, 600.0)
 
-    before = lab_processes()
     with served(app) as address:
         with pytest.raises(httpx.ReadTimeout):
             httpx.get(f"{address}/long", timeout=httpx.Timeout(5.0, read=2.0))
-        wait_for(lambda: lab_processes() <= before)
-    lab.close()
+        wait_for(lambda: lab_processes() <= others)
 
 
 @contextmanager

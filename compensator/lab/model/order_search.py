@@ -110,7 +110,7 @@ class Path:
         for some in np.array_split(orders, -(-2 * len(orders) * len(self.position) // AT_ONCE)):
             columns = self.columns(some)
             for kind, found in sizes.items():
-                found.append(explained(self.factor(kind) * columns, basis, residual))
+                found.append(explained(columns if kind == FORCE else self.factor(kind) * columns, basis, residual))
         return {kind: np.concatenate(found) for kind, found in sizes.items()}
 
     def refined(self, basis: FloatArray, residual: FloatArray, order: float, kind: str) -> float:

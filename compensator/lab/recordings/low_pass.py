@@ -1,4 +1,4 @@
-"""The zero-phase low-pass that columns and effort go through alike.
+"""The zero-phase low-pass that columns and effort go through alike, and a band-pass that is filtered as they are.
 
 A diagnosis filters thousands of columns of short trials. scipy's filter takes one after the other, and each call costs
 more than the work; here all columns, of one trial or of many, go side by side through each section, which is the same
@@ -18,6 +18,7 @@ from compensator.lab.recordings.recording import FloatArray, IntArray
 FILTER_ORDER = 4
 TURNED_AT_ONCE = 8  # rows: what a line of the cache holds
 PASSES_ALL = 0.49  # of the sampling rate: from there on nothing is taken away
+TOP_OF_BAND = 0.45  # of the sampling rate: no band goes higher
 PADDING = 3  # times the filter's length, continued at both ends
 
 
@@ -52,6 +53,24 @@ def low_pass_thinned(
     Returns:
         The picked samples of all blocks, one after the other, shape (N, k).
     """
+    untouched = [index for index, rate_hz in enumerate(rates_hz) if cutoff_hz >= PASSES_ALL * rate_hz]
+    return _filtered_thinned(blocks, cutoff_hz, rates_hz, picked, untouched)
+
+
+def band_pass_thinned(
+    values: FloatArray, low_hz: float, high_hz: float, rate_hz: float, picked: IntArray
+) -> FloatArray:
+    """The same between two frequencies, for one trial's columns (k, n): shape (N, k)."""
+    return _filtered_thinned([values], (low_hz, high_hz), [rate_hz], [picked], [])
+
+
+def _filtered_thinned(
+    blocks: Sequence[FloatArray],
+    passed_hz: float | tuple[float, float],
+    rates_hz: Sequence[float],
+    picked: Sequence[IntArray],
+    untouched: Sequence[int],
+) -> FloatArray:
     whole = np.concatenate(blocks, axis=1)
     ends = np.cumsum([0, *(len(one) for one in picked)])
     thinned = np.zeros((ends[-1], len(whole)))
@@ -60,14 +79,13 @@ def low_pass_thinned(
         return thinned
     starts = np.cumsum([0, *(block.shape[1] for block in blocks)])
     lengths = np.diff(starts)
-    untouched = [index for index, rate_hz in enumerate(rates_hz) if cutoff_hz >= PASSES_ALL * rate_hz]
     for index in untouched:
         thinned[ends[index] : ends[index + 1]] = blocks[index].T[picked[index]]
     # the longest first, so that the columns that have begun stand side by side
     some = [int(index) for index in np.argsort(-lengths, kind="stable") if index not in untouched and lengths[index]]
     if not some:
         return thinned
-    designs, steady, ends_of = _designs(cutoff_hz, tuple(rates_hz[index] for index in some), len(used))
+    designs, steady, ends_of = _designs(passed_hz, tuple(rates_hz[index] for index in some), len(used))
     padding = PADDING * (FILTER_ORDER + 1)
     longest = int(lengths[some[0]]) + 2 * padding
     first_rows = longest - 2 * padding - lengths[some]
@@ -87,15 +105,28 @@ def _used(columns: FloatArray) -> IntArray:
     return np.flatnonzero(seen if seen.all() else columns.any(axis=1))
 
 
-@lru_cache(maxsize=256)
-def filter_sections(cutoff_hz: float, rate_hz: float) -> tuple[FloatArray, FloatArray]:
-    """Second-order sections of the low-pass, and the state of each that a constant 1 settles to."""
-    sections: FloatArray = butter(FILTER_ORDER, cutoff_hz, fs=rate_hz, output="sos")
+@lru_cache(maxsize=256)  # trials of one bench have one rate, and the design takes longer than the filtering
+def filter_sections(passed_hz: float | tuple[float, float], rate_hz: float) -> tuple[FloatArray, FloatArray]:
+    """Second-order sections of the low-pass, and the state of each that a constant 1 settles to.
+
+    Args:
+        passed_hz: up to where, or between which two frequencies: a band-pass of half the order has as many sections.
+        rate_hz: of the samples.
+    """
+    sections: FloatArray
+    if isinstance(passed_hz, tuple):
+        low_hz, high_hz = passed_hz
+        band_hz = (low_hz, min(high_hz, TOP_OF_BAND * rate_hz))
+        sections = butter(FILTER_ORDER // 2, band_hz, btype="bandpass", fs=rate_hz, output="sos")
+    else:
+        sections = butter(FILTER_ORDER, passed_hz, fs=rate_hz, output="sos")
     return sections, sosfilt_zi(sections)
 
 
 @lru_cache(maxsize=256)
-def _designs(cutoff_hz: float, rates_hz: tuple[float, ...], width: int) -> tuple[FloatArray, FloatArray, IntArray]:
+def _designs(
+    passed_hz: float | tuple[float, float], rates_hz: tuple[float, ...], width: int
+) -> tuple[FloatArray, FloatArray, IntArray]:
     """Filters of blocks of such rates and a width, those side by side that are alike once.
 
     A fit asks for the same trials side by side again and again.
@@ -105,7 +136,7 @@ def _designs(cutoff_hz: float, rates_hz: tuple[float, ...], width: int) -> tuple
         that each ends at, (designs,).
     """
     alike = [(rate_hz, len(list(group))) for rate_hz, group in groupby(rates_hz)]
-    found = [filter_sections(cutoff_hz, rate_hz) for rate_hz, _ in alike]
+    found = [filter_sections(passed_hz, rate_hz) for rate_hz, _ in alike]
     designs, steady = (np.array(kind) for kind in zip(*found, strict=True))
     return designs, steady.reshape(len(alike), 4), width * np.cumsum([count for _, count in alike])
 

@@ -1,12 +1,10 @@
 """The plainest columns in a band of frequencies: what any joint's effort holds, before there is a model."""
 
 from collections.abc import Sequence
-from functools import lru_cache
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
-from compensator.lab.recordings.low_pass import low_pass
+from compensator.lab.recordings.low_pass import band_pass_thinned, low_pass
 from compensator.lab.recordings.processing import Signals, lowest_cutoff_hz
 from compensator.lab.recordings.recording import FloatArray, Recording
 
@@ -64,15 +62,7 @@ def _band(trial: Signals, low_hz: float, high_hz: float) -> FloatArray:
     direction, sine = np.tanh(trial.velocity / speed), np.sin(position)
     plain = [trial.acceleration, trial.velocity, direction, position, sine]
     with_load = [load_kg(trial) * column for column in (trial.acceleration, direction, sine)]
-    stack = np.array([*plain, *with_load, trial.effort])
-    top = min(high_hz, 0.45 * trial.rate_hz)
-    sections = _band_pass(low_hz, top, trial.rate_hz)
-    filtered: FloatArray = sosfiltfilt(sections, np.nan_to_num(stack), axis=-1)
-    moving = np.abs(trial.velocity) > speed
-    return filtered[:, trial.usable & moving]
-
-
-@lru_cache(maxsize=256)  # trials of one bench have one rate, and the design takes longer than the filtering
-def _band_pass(low_hz: float, high_hz: float, rate_hz: float) -> FloatArray:
-    sections: FloatArray = butter(2, (low_hz, high_hz), btype="bandpass", fs=rate_hz, output="sos")
-    return sections
+    stack = np.nan_to_num(np.array([*plain, *with_load, trial.effort]))
+    moving = np.flatnonzero(trial.usable & (np.abs(trial.velocity) > speed))
+    filtered = band_pass_thinned(stack, low_hz, high_hz, trial.rate_hz, moving)
+    return np.ascontiguousarray(filtered.T)

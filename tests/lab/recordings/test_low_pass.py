@@ -2,9 +2,15 @@
 
 import numpy as np
 import pytest
-from scipy.signal import sosfiltfilt
+from scipy.signal import butter, sosfiltfilt
 
-from compensator.lab.recordings.low_pass import FILTER_ORDER, filter_sections, low_pass, low_pass_thinned
+from compensator.lab.recordings.low_pass import (
+    FILTER_ORDER,
+    band_pass_thinned,
+    filter_sections,
+    low_pass,
+    low_pass_thinned,
+)
 
 CUTOFF_HZ = 8.0
 
@@ -30,6 +36,14 @@ def test_columns_side_by_side_are_filtered_as_scipy_filters_each(shape, cutoff_h
     assert found.shape == shape
     assert found == pytest.approx(wanted, rel=1e-9, abs=1e-12)
     assert (values == before).all()
+
+
+@pytest.mark.parametrize("high_hz", [9.0, 120.0])  # of one the band would end beyond Nyquist
+def test_a_band_is_passed_as_scipy_passes_it(high_hz):
+    values, picked = np.random.default_rng(4).standard_normal((3, 700)), np.arange(0, 700, 9)
+    sections = butter(2, (2.0, min(high_hz, 90.0)), btype="bandpass", fs=200.0, output="sos")
+    wanted = sosfiltfilt(sections, values, axis=-1)[:, picked].T
+    assert band_pass_thinned(values, 2.0, high_hz, 200.0, picked) == pytest.approx(wanted, rel=1e-9, abs=1e-12)
 
 
 def test_whole_numbers_are_filtered_as_numbers():
