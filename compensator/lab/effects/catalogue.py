@@ -28,6 +28,7 @@ from compensator.lab.effects.friction.load import (
     load_friction,
     load_friction_quadratic,
     weight_friction,
+    weight_stribeck,
 )
 from compensator.lab.effects.friction.memory import (
     dwell_strengthening,
@@ -76,6 +77,7 @@ _OURS = (
     load_friction,
     load_friction_quadratic,
     weight_friction,
+    weight_stribeck,
     back_driving_friction,
     coulomb_quadrant,
     coulomb_temperature,

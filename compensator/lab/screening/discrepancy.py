@@ -13,7 +13,9 @@ discrepancy). So candidates are judged on top of
   one more effect (Hamada, Wu 1992: effect heredity).
 """
 
+from collections.abc import Collection
 from dataclasses import replace
+from functools import partial
 from itertools import chain, combinations
 
 import numpy as np
@@ -28,10 +30,15 @@ OFFSET = "offset"
 TANGENT_STEP = 0.05  # relative change of a shape value for its tangent column
 
 
-def model_columns(fit: Fit) -> FloatArray:
-    """The model's columns that no bound holds, and what its formulas leave open; shape (N, k)."""
+def model_columns(fit: Fit, apart: Collection[str] = ()) -> FloatArray:
+    """The model's columns that no bound holds, and what its formulas leave open; shape (N, k).
+
+    Args:
+        fit: the model.
+        apart: effects whose product is left out: an effect that is judged stands for it.
+    """
     free = np.concatenate([term.kept & ~term.at_bound for term in fit.terms])
-    return np.column_stack([fit.columns[:, free], *_tangents(fit), discrepancy_columns(fit)])
+    return np.column_stack([fit.columns[:, free], *_tangents(fit), discrepancy_columns(fit, apart)])
 
 
 def open_columns(fit: Fit) -> FloatArray:
@@ -40,12 +47,12 @@ def open_columns(fit: Fit) -> FloatArray:
     return np.column_stack([*_tangents(fit), found]) if found.shape[1] else found
 
 
-def discrepancy_columns(fit: Fit) -> FloatArray:
-    """What formulas leave open beside their shapes, over all rows, shape (N, k)."""
+def discrepancy_columns(fit: Fit, apart: Collection[str] = ()) -> FloatArray:
+    """What formulas leave open beside their shapes, over all rows, shape (N, k). Arguments as `model_columns`."""
     dataset = fit.dataset
     terms = [term for term in fit.terms if np.any(term.coefficients)]
     motions = [trial.motion for trial in dataset.trials]
-    kinds = (_own, _misread, _carried, _products)
+    kinds = (_own, _misread, _carried, partial(_products, apart=apart))
     full_rate = (np.array([column for kind in kinds for column in kind(terms, m)]) for m in motions)
     first = next(full_rate)  # the others one by one: all of them at the full rate would need much memory
     return dataset.stack(chain([first], full_rate)) if len(first) else np.empty((len(dataset.effort), 0))
@@ -108,11 +115,13 @@ def _more_load(term: Term, motion: Motion) -> list[FloatArray]:
     return [share * coefficient * column for coefficient, column in parts if coefficient]
 
 
-def _products(terms: list[Term], motion: Motion) -> list[FloatArray]:
-    """Of shares of dry friction, each of which may be a factor of all the others; (n,) each."""
+def _products(terms: list[Term], motion: Motion, apart: Collection[str]) -> list[FloatArray]:
+    """Of shares of dry friction, each of which may be a factor of all the others but for those apart; (n,) each."""
     shares = [(_share(term, motion, term.shape), term) for term in terms if term.effect.dry_friction]
     found = []
     for (one, first), (other, second) in combinations(shares, 2):
+        if {first.effect.name, second.effect.name} <= set(apart):
+            continue
         found.append(one * other)
         found += [one * (_share(second, motion, moved) - other) for moved in _moved(second)]
         found += [other * (_share(first, motion, moved) - one) for moved in _moved(first)]

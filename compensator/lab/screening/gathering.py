@@ -54,12 +54,12 @@ class _Builder:
     def __init__(self, fit: Fit, show_in: MotionRows, rows: BoolArray, weights: FloatArray) -> None:
         self._fit, self._show_in, self._rows, self._weights = fit, show_in, rows, weights
         self._nuisance = nuisance_columns(fit.dataset, show_in)
-        self._model = model_columns(fit)
         # near reversals all changes within a delay; what a chain makes of the effort shows in it as it was recorded
         self._target = fit.target + (fit.dataset.effort_gained_in_step if show_in == "moving" else 0.0)
-        self._index: dict[frozenset[str], int] = {}
+        self._index: dict[tuple[frozenset[str], tuple[str, ...]], int] = {}
         self.bases: list[Base] = []
-        self._base_without(frozenset())
+        self._model: dict[tuple[str, ...], FloatArray] = {(): model_columns(fit)}
+        self._base_of(frozenset(), ())
 
     def weighted(self, columns: FloatArray) -> FloatArray:
         return columns[self._rows] * self._weights[:, None]
@@ -70,7 +70,7 @@ class _Builder:
         wanted, left_out = self._judged()
         made = dataset.columns_of_effects(wanted)
         blocks = [
-            Block(effect.name, self.weighted(columns), self._base_without(effect.standing_in), len(shapes), shape)
+            Block(effect.name, self.weighted(columns), self._base_for(effect), len(shapes), shape)
             for (effect, shapes), found in zip(wanted, made, strict=True)
             for shape, columns in zip(shapes, found, strict=True)
         ]
@@ -98,14 +98,20 @@ class _Builder:
             wanted.append((effect, path.shown(shapes) if effect.goes_round is not None else shapes))
         return wanted, left_out
 
-    def _base_without(self, nuisances: frozenset[str]) -> int:
-        if nuisances not in self._index:
+    def _base_for(self, effect: Effect) -> int:
+        """Without what the effect stands for: columns of the chain, or the product of two that it comes after."""
+        return self._base_of(effect.standing_in, effect.after if len(effect.after) > 1 else ())
+
+    def _base_of(self, nuisances: frozenset[str], apart: tuple[str, ...]) -> int:
+        if (nuisances, apart) not in self._index:
+            if apart not in self._model:
+                self._model[apart] = model_columns(self._fit, apart)
             kept = [column for name, column in self._nuisance.items() if name not in nuisances]
-            columns = np.column_stack([self._model, *kept])
-            self._index[nuisances] = len(self.bases)
+            columns = np.column_stack([self._model[apart], *kept])
+            self._index[nuisances, apart] = len(self.bases)
             effort = self._weights * self._target[self._rows]
             self.bases.append(Base.of(self.weighted(columns), effort))
-        return self._index[nuisances]
+        return self._index[nuisances, apart]
 
 
 def with_noise(gathered: Candidates) -> Candidates:

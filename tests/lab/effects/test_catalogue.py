@@ -83,7 +83,7 @@ def test_gravity_does_no_work_on_a_horizontal_or_linear_joint():
 
 def test_candidates_are_what_the_model_does_not_have():
     names = [effect.name for effect in candidates(default_effects(Facts()), Facts())]
-    not_yet = ["cogging_orders", "measured_load"]
+    not_yet = ["cogging_orders", "measured_load", "weight_stribeck"]
     assert sorted([*names, *default_effects(Facts()), *not_yet]) == sorted(catalogue())
 
 

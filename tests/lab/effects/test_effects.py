@@ -147,6 +147,10 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "load_friction": ((), lambda m: [np.abs(1.3 * np.sin(m.position) - 0.2) * np.sign(m.velocity)]),
     "load_friction_quadratic": ((), lambda m: [(1.3 * np.sin(m.position) - 0.2) ** 2 * np.sign(m.velocity)]),
     "weight_friction": ((), lambda m: [LOAD_KG * np.sign(m.velocity)]),
+    "weight_stribeck": (
+        (0.7, 2.0),
+        lambda m: [LOAD_KG * np.sign(m.velocity) * np.exp(-((m.velocity / 0.7) ** 2))],
+    ),
     "coulomb_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * np.sign(m.velocity)]),
     "viscous_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * m.velocity]),
     "position_periodic_friction": ((7.0,), lambda m: [part * np.sign(m.velocity) for part in over_a_sample(m, 7.0)]),

@@ -47,10 +47,23 @@ def meshed(x: Truth) -> np.ndarray:
     return 0.3 * np.abs(load + 0.08 * np.sign(x.v)) * np.sign(x.v)
 
 
-@pytest.mark.parametrize(("law", "effect"), [(grown, "weight_friction"), (meshed, "load_friction")])
-def test_what_the_formula_of_a_complete_model_misses_is_no_effect(law, effect):
-    found = diagnose(fitted(Joint(static_excess=0.08, extra=law), effect))
+@pytest.mark.parametrize(
+    ("law", "effects"), [(grown, ("weight_friction", "weight_stribeck")), (meshed, ("load_friction",))]
+)
+def test_what_the_formula_of_a_complete_model_misses_is_no_effect(law, effects):
+    found = diagnose(fitted(Joint(static_excess=0.08, extra=law), *effects))
     assert found.verdict != "missing", found.sentence
+
+
+def heavier(x: Truth) -> np.ndarray:
+    """Weight changes Coulomb friction alone."""
+    return 0.08 * np.sign(x.v) * 6.0 * x.load_kg
+
+
+@pytest.mark.parametrize(("law", "named"), [(grown, ["weight_stribeck"]), (heavier, [])])
+def test_weight_that_changes_static_friction_as_well_is_no_product_that_is_left_open(law, named):
+    found = diagnose(fitted(Joint(static_excess=0.08, extra=law), "weight_friction"))
+    assert [name for names in found.classes[:1] for name in names if found.verdict == "missing"] == named
 
 
 def test_shares_of_dry_friction_may_multiply():
