@@ -177,6 +177,12 @@ def test_of_pairs_those_that_are_clear_are_asked_for_and_flags_where_both_are_ri
     both, recall = _figure(results, "both and no other"), _figure(results, "recall")
     assert (both.items, both.measured) == (4, 0.5)
     assert (recall.items, recall.measured) == (4, pytest.approx(7 / 8))
+    heavy = replace(
+        pair(("weight_friction", "drag", "weight_stribeck")),
+        truths=("weight_growth", "drag"),
+        names=("weight_friction", "drag"),
+    )
+    assert _figure([heavy], "both and no other").measured == 1.0  # of one mechanism two shares are right
     flags = _figure(results, "where two were named")
     assert (flags.items, flags.measured, flags.reached) == (2, 0.5, False)
 

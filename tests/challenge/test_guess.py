@@ -33,6 +33,8 @@ def test_every_mechanism_has_its_names_and_the_lab_knows_them() -> None:
         (("spring", "drag"), "spring", ("spring",), ("drag",), (), 1.0),
         # one class stands for one mechanism, even if it holds the names of both
         (("spring", "centre_of_mass"), "spring/centre_of_mass_angle", ("spring",), ("centre_of_mass",), (), 0.5),
+        (("weight_growth",), "weight_friction,weight_stribeck", ("weight_growth",), (), (), 1.0),  # it has both shares
+        (("weight_growth",), "weight_stribeck,spring", ("weight_growth",), (), ("spring",), 0.0),
         (("hose",), "none-of-these", ("hose",), (), (), 1.0),
         (("hose",), "spring", (), ("hose",), ("spring",), -1.0),
         (("spring",), "spring,measurement_delay", ("spring",), (), (), 1.0),  # a delay is in every recording

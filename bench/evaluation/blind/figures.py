@@ -10,6 +10,7 @@ from scipy.stats import kstest
 from bench.evaluation.blind.calibration import interval
 from bench.evaluation.blind.result import LabAnswer, Result, Standing
 from bench.evaluation.blind.smallest import smallest_found
+from bench.evaluation.challenge.names import ACCEPTED
 
 MUST_NAME, MUST_NOT_NAME = 6.0, 3.0  # d' from which a name is due, and below which a single one is too much
 SHOWN = 0.15  # r from which an effect is expected in the class
@@ -262,7 +263,9 @@ def _is_exact(one: Result) -> bool:
 
 
 def _extra(one: Result) -> bool:
-    return any(names[0] not in one.names for names in _answer(one).named)
+    """Whether something is named that is no right name of anything that is hidden."""
+    right = {*one.names, *(name for truth in one.truths for name in ACCEPTED.get(truth, ()))}
+    return any(names[0] not in right for names in _answer(one).named)
 
 
 def ratio_of(left: float) -> float:

@@ -105,11 +105,11 @@ def score(truths: Iterable[str], guess: Guess, absorbed: Iterable[str] = (), fai
     unknown_used = False
     for truth in truths:
         names = accepted(truth)
-        found = next((one for one in left if set(one) & set(names)), None)
-        if found is not None:
-            left.remove(found)
+        found = [one for one in left if set(one) & set(names)]
+        if found:
+            left = [one for one in left if one not in found]  # two shares of one mechanism are both right
             right.append(truth)
-            sizes.append(len(found))
+            sizes.append(len(found[0]))
         elif not names and guess.unknown:
             unknown_used = True
             right.append(truth)

@@ -21,7 +21,7 @@ ACCEPTED: dict[str, tuple[str, ...]] = {
     "thermal_drift": ("winding_temperature",),
     "eccentricity": ("encoder_eccentricity",),
     "load_friction": ("load_friction",),
-    "weight_growth": ("weight_friction",),
+    "weight_growth": ("weight_friction", "weight_stribeck"),
     "bristle": ("pre_sliding", "frictional_lag"),
     "dwell": ("dwell_strengthening",),
     "backlash": ("backlash",),

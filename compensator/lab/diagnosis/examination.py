@@ -1,5 +1,6 @@
 """Examine candidates: refit with each, measure the gain on held-out rows, find its rivals."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -18,19 +19,25 @@ from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import VERY_STRONG, Evidence, kept_evidence, new_directions
+from compensator.lab.screening.evidence import STRONG, VERY_STRONG, Evidence, kept_evidence, new_directions
 
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
 NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/explanation/diagnosis.md)
 
 
-def best_shapes(evidence: list[Evidence]) -> list[Evidence]:
-    """The best shape of every effect, best effect first, of evidence in that order."""
-    best_of: dict[str, Evidence] = {}
+def best_shapes(evidence: list[Evidence], can_be: Callable[[Evidence], bool] = lambda _: True) -> list[Evidence]:
+    """The best shape of every effect, best effect first, of evidence in that order.
+
+    Where the best shape cannot be the effect's, it gives way to one that can and is not surely worse: far below its
+    resonance, a spring shows how much it gives, and hardly how it is damped.
+    """
+    own: dict[str, list[Evidence]] = {}
     for item in evidence:
-        best_of.setdefault(item.block.name, item)
-    return list(best_of.values())
+        own.setdefault(item.block.name, []).append(item)
+    alike = ([one for one in shapes if one.score > shapes[0].score - STRONG] for shapes in own.values())
+    best = [next(filter(can_be, shapes), shapes[0]) for shapes in alike]
+    return sorted(best, key=lambda item: -item.score)
 
 
 def examine(fit: Fit, gathered: Candidates, evidence: list[Evidence]) -> list[Candidate]:

@@ -13,6 +13,7 @@ from compensator.lab.diagnosis.physical import (
     is_too_small,
     is_within_bounds,
     why_impossible,
+    why_not_physical,
 )
 from compensator.lab.diagnosis.remaining import large_bursts, what_remains, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
@@ -41,7 +42,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
         named: evidence for the family's effects.
         generic: evidence for free curves; None where a formula need not be held against one.
     """
-    shapes = best_shapes(named.evidence)
+    shapes = best_shapes(named.evidence, lambda item: not why_not_physical(gathered, item))
     if not shapes:
         return Answer("nothing", nothing_in_words(1.0), 1.0, [], None, [])
     shown = [item for item in shapes if item.score > 0.0][:EXAMINED]

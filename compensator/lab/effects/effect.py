@@ -220,6 +220,10 @@ def _no_shapes(_: Motion) -> list[Shape]:
     return [()]
 
 
+def _anywhere(_: Shape) -> bool:
+    return True
+
+
 def _nothing_told(_facts: Facts, _shape: Shape) -> bool:
     return False
 
@@ -312,6 +316,7 @@ class Effect:
         goes_round: its shape is an order of the position, as a force or against the motion: one that its shapes lack
             is found where no gear ratio tells which these are; None: it has no such shape.
         told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
+        searched: shape -> whether a search for the best one goes there; a scan may, to see what fits better beyond.
         holds: shape that it takes in a model -> whether that is this effect still; None: any is.
         ends_within_scan: so many of the shape's first values end within the scan: what fits best at an upper end goes
             on beyond it, and is something else.
@@ -346,6 +351,7 @@ class Effect:
     dry_friction: bool = False
     discrepancy: Callable[[Motion, Shape], FloatArray] | None = None
     least_of_friction: float = 0.0
+    searched: Callable[[Shape], bool] = _anywhere
     holds: Callable[[Shape], bool] | None = None
     ends_within_scan: int = 0
     shape_over: Callable[[Sequence[Motion]], Shape] | None = None

@@ -69,7 +69,8 @@ class _Search:
         self._basis = orthonormal(self._weight * fixed)
         effort = weight * dataset.target[rows]
         self._rest = effort - self._basis @ (self._basis.T @ effort)
-        self._grid = effect.grid([trial.motion for trial in dataset.trials])
+        whole = effect.grid([trial.motion for trial in dataset.trials])
+        self._grid = [shape for shape in whole if effect.searched(shape)]
         self._bounds = [(parameter.low, parameter.high) for parameter in effect.parameters]
 
     def explained(self, columns: FloatArray) -> float:
@@ -132,6 +133,8 @@ class _Search:
         """The best shape between the grid's values, from a start."""
 
         def loss(shape: Shape) -> float:
+            if not self._effect.searched(shape):
+                return 0.0
             motions = [self._effect.columns(trial.motion, shape) for trial in self._dataset.trials]
             return -self.explained(self._dataset.stack(motions))
 

@@ -29,7 +29,7 @@ def _pays(gathered: Candidates, block: Block) -> bool:
 def _between(gathered: Candidates, own: list[Block]) -> Block:
     """The block of the best shape between an effect's own; it pays for every shape tried.
 
-    The best is what explains most with a share of the load that can be.
+    The best is what explains most in a shape, and with a share of the load, that can be.
     """
     effect, dataset = effect_named(own[0].name), gathered.fit.dataset
     [bounds] = effect.ranges_in(dataset.effort_definition.quantity)
@@ -40,6 +40,8 @@ def _between(gathered: Candidates, own: list[Block]) -> Block:
         return replace(own[0], columns=gathered.tested(columns), scanned=scanned, shape=shape)
 
     def power(block: Block) -> float:
+        if not effect.searched(block.shape):
+            return 0.0
         base = gathered.bases[block.base]
         column = block.columns[:, 0]
         return power_within(base.beyond(column), base.residual, bounds)

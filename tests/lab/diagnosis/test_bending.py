@@ -108,7 +108,7 @@ def comes_up(friction_n_m: float, distance_rad: float) -> Law:
     ("friction_n_m", "distance_rad", "verdict"),
     [
         (0.018, 0.05, "unknown-effect"),
-        (0.054, 0.001, "nothing"),  # half of the distance, and more friction, would explain nearly as much
+        (0.054, 0.001, "missing"),  # half of the distance, and more friction, explains nearly as much, and can be
         (0.060, 0.003, "missing"),
     ],
 )

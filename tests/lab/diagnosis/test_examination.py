@@ -136,11 +136,12 @@ def test_a_sign_or_size_that_cannot_be_is_the_shadow_of_something_else(rows):
     assert not is_confirmed(replace(candidate, impossible="it would be -2, allowed 0 to 1"))
 
 
-def test_the_shape_that_fits_best_speaks_for_its_effect_whether_it_can_be_or_not():
+@pytest.mark.parametrize(("second", "best"), [(212.0, 0), (248.0, 1)])
+def test_a_shape_that_cannot_be_gives_way_to_one_that_can_where_that_is_not_surely_worse(second, best):
     column = np.sin(np.arange(50.0))
-    shapes = [((0.0053,), 253.0), ((0.0032,), 212.0)]  # the second could be, and explains clearly less
     evidence = [
         Evidence(Block("backlash", column[:, None], 0, 15, shape), score, score, 0.001, column)
-        for shape, score in shapes
+        for shape, score in [((0.0053,), 253.0), ((0.0032,), second)]
     ]
-    assert examination.best_shapes(evidence) == [evidence[0]]
+    found = examination.best_shapes(evidence, lambda item: item.block.shape == (0.0032,))
+    assert found == [evidence[best]]

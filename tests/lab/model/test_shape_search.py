@@ -32,6 +32,16 @@ def test_a_coefficient_beyond_its_bounds_explains_what_the_bound_does(dataset, l
     assert search.explained(columns) == pytest.approx(explained, rel=1e-9, abs=1e-9)
 
 
+def test_a_search_stays_where_a_shape_is_its_effect(dataset):
+    rows = np.ones(len(dataset.target), dtype=bool)
+    free = effect_named("stribeck")
+    speeds: list[float] = []
+    for searched in (free.searched, lambda shape: shape[0] < 0.8 * speeds[0]):
+        search = _Search(dataset, replace(free, searched=searched), rows, np.empty((len(rows), 0)), np.ones(len(rows)))
+        speeds.append(search.refine(search.scan())[0])
+    assert 0.6 * speeds[0] < speeds[1] < 0.8 * speeds[0]
+
+
 def test_a_value_that_the_whole_grid_shares_costs_no_evaluations():
     def loss(shape):
         asked.append(shape)

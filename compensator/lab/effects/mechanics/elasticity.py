@@ -79,5 +79,5 @@ EFFECT = Effect(
     rows="moving",
     told=told,
     ends_within_scan=2,
-    holds=swings,
+    searched=swings,
 )
