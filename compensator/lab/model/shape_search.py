@@ -71,6 +71,7 @@ class _Search:
         self._rest = effort - self._basis @ (self._basis.T @ effort)
         whole = effect.grid([trial.motion for trial in dataset.trials])
         self._grid = [shape for shape in whole if effect.searched(shape)]
+        self._beyond = [shape for shape in whole if not effect.searched(shape)]
         self._bounds = [(parameter.low, parameter.high) for parameter in effect.parameters]
 
     def explained(self, columns: FloatArray) -> float:
@@ -134,11 +135,11 @@ class _Search:
 
         def loss(shape: Shape) -> float:
             if not self._effect.searched(shape):
-                return 0.0
+                return np.inf
             motions = [self._effect.columns(trial.motion, shape) for trial in self._dataset.trials]
             return -self.explained(self._dataset.stack(motions))
 
-        return between(self._grid, start, loss)
+        return between([*self._grid, *self._beyond], start, loss)
 
 
 def independent_rows(rest: FloatArray) -> float:

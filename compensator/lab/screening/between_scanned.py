@@ -6,6 +6,8 @@ strong and the share of the load one that can be. So the best shape is looked fo
 
 from dataclasses import replace
 
+import numpy as np
+
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import Shape
 from compensator.lab.model.shape_search import REFINEMENTS, between, power_within
@@ -41,7 +43,7 @@ def _between(gathered: Candidates, own: list[Block]) -> Block:
 
     def power(block: Block) -> float:
         if not effect.searched(block.shape):
-            return 0.0
+            return -np.inf
         base = gathered.bases[block.base]
         column = block.columns[:, 0]
         return power_within(base.beyond(column), base.residual, bounds)

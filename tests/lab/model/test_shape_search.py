@@ -39,7 +39,7 @@ def test_a_search_stays_where_a_shape_is_its_effect(dataset):
     for searched in (free.searched, lambda shape: shape[0] < 0.8 * speeds[0]):
         search = _Search(dataset, replace(free, searched=searched), rows, np.empty((len(rows), 0)), np.ones(len(rows)))
         speeds.append(search.refine(search.scan())[0])
-    assert 0.6 * speeds[0] < speeds[1] < 0.8 * speeds[0]
+    assert 0.75 * speeds[0] < speeds[1] < 0.8 * speeds[0]  # beyond the last value of the grid that is searched
 
 
 def test_a_value_that_the_whole_grid_shares_costs_no_evaluations():

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_model, widened
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening import between_scanned
 from compensator.lab.screening.between_scanned import with_shapes_between
 from compensator.lab.screening.evidence import score_of
 from compensator.lab.screening.gathering import gather
@@ -35,6 +36,12 @@ def test_a_shape_is_found_between_those_scanned_and_pays_for_having_been_looked_
     assert found.shape[0] == pytest.approx(50.0 / (2.0 * np.pi), rel=0.05)
     assert score_of(scanned.bases, found) > best_score(scanned, "elasticity") + 10.0
     assert found.scanned > next(block.scanned for block in scanned.named if block.name == "elasticity")
+
+
+def test_it_is_looked_for_where_a_shape_is_its_effect(scanned, monkeypatch):
+    kept = replace(effect_named("elasticity"), searched=lambda shape: shape[0] < 7.0)
+    monkeypatch.setattr(between_scanned, "effect_named", lambda name: kept if name == kept.name else effect_named(name))
+    assert with_shapes_between(scanned).named[-1].shape[0] < 7.0
 
 
 def test_nothing_is_looked_for_of_an_effect_whose_evidence_does_not_pay(scanned):
