@@ -29,7 +29,10 @@ from drivers.contract import Drive
 from drivers.errors import DriveError
 
 WAKING_S = 1.0  # longest wait for a drive that nobody has asked for a while
-_STILL_BRAKES = f"the drive still braked {BRAKING_S:g} s after the stop, and its power was taken away: its ramp is slow"
+_STILL_BRAKES = (
+    f"the drive still braked {BRAKING_S:g} s after the stop, and its power was taken away: its ramp is slow, or a load "
+    "moves the joint on"
+)
 
 
 class ControlLoop(Generic[ActionT, ReadingT]):
