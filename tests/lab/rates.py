@@ -2,11 +2,15 @@
 
 Trials are recorded once by the simulated bench, through the public command, and each set is judged in a process of its
 own: import, study (read, filter, fit), comparison, diagnosis with its pictures, and the report page are timed apart.
+What an import compiles after an installation is compiled before. How a comparison grows is told by processes of their
+own, of two sizes in turn.
 Rows are streamed (`compensator.lab.model.streaming`): time and peak memory stand beside their number.
 """
 
 import argparse
 import json
+import math
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -15,6 +19,8 @@ from typing import Any, NamedTuple
 
 from tests.lab.line import Line, print_table
 
+MOST_EXPONENT = 1.05  # of a comparison's seconds by the number of trials
+ROUNDS = 5  # of comparisons
 MOST_GROWTH = 1.2  # of the time per row, and of the memory, from the fewest rows to the most
 RECORD = ("run", "excitation", "--duration-s", "6", "--json")
 
@@ -25,10 +31,11 @@ class Case(NamedTuple):
     trials: int
     loads_kg: str
     repeats: int
-    asked_s: float
+    asked_s: float = math.inf
 
 
 CASES = (Case(24, "0,0.1", 2, 2.5), Case(216, "0,0.05,0.1", 12, 12.0))
+GROWING = (Case(72, "0,0.05,0.1", 4), CASES[-1])
 
 
 def main() -> None:
@@ -42,18 +49,41 @@ def main() -> None:
         folder = arguments.folder or Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
         cases = [case for case in CASES if case.trials <= arguments.most_trials]
+        timed(CASES[0], folder)
         lines = [line for case in cases for line in diagnosing(case, folder)]
+        if GROWING[-1] in cases:
+            lines.append(growing(folder))
         print_table([*lines, *streaming(arguments.rows.split(","))])
 
 
-def diagnosing(case: Case, folder: Path) -> list[Line]:
-    """A set from the store to the answer with its pictures."""
+def timed(case: Case, folder: Path, *options: str) -> dict[str, Any]:
+    """What one process tells of a set, which is recorded where it is not there."""
     store = f"sqlite:///{folder / f'{case.trials}.sqlite'}"
     if not (folder / f"{case.trials}.sqlite").exists():
         words = ("--loads-kg", case.loads_kg, "--repeats", str(case.repeats))
         run(sys.executable, "-m", "bench.cli", "--store", store, *RECORD, *words)
-    told = json.loads(run(sys.executable, "-m", "tests.lab.timed_diagnosis", store))
+    told: dict[str, Any] = json.loads(run(sys.executable, "-m", "tests.lab.timed_diagnosis", store, *options))
+    return told
+
+
+def diagnosing(case: Case, folder: Path) -> list[Line]:
+    """A set from the store to the answer with its pictures."""
+    told = timed(case, folder)
     return [*_summary(case, told), *(_part(name, *spent) for name, spent in told["laps"].items())]
+
+
+def growing(folder: Path) -> Line:
+    """The exponent by which a comparison's seconds of one core grow with the number of trials."""
+    rounds = [[timed(case, folder, "--comparison")["laps"]["comparison"][1] for case in GROWING] for _ in range(ROUNDS)]
+    few_s, many_s = (statistics.median(spent) for spent in zip(*rounds, strict=True))
+    few, many = GROWING
+    exponent = math.log(many_s / few_s) / math.log(many.trials / few.trials)
+    return Line(
+        f"comparison, {few.trials} to {many.trials} trials",
+        f"n^{MOST_EXPONENT:g} at most",
+        f"n^{exponent:.2f}, {few_s:.3f} to {many_s:.3f} s of one core, medians of {ROUNDS}",
+        exponent <= MOST_EXPONENT,
+    )
 
 
 def streaming(counts: list[str]) -> list[Line]:

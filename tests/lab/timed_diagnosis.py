@@ -1,11 +1,12 @@
 """One diagnosis in a process of its own, timed from its first import: `python -m tests.lab.timed_diagnosis STORE`.
 
 Prints JSON: seconds of the wall clock and of one core for each part, pictures drawn, bytes of the report, peak memory.
+With --comparison it ends after the comparison, and prints the seconds alone.
 """
 
+import argparse
 import json
 import resource
-import sys
 import time
 from collections.abc import Callable
 from types import SimpleNamespace
@@ -14,6 +15,10 @@ from typing import Any
 
 def main() -> None:
     """Time the diagnosis of the store's first experiment."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("store")
+    parser.add_argument("--comparison", action="store_true", help="no more than that")
+    arguments = parser.parse_args()
     laps: dict[str, tuple[float, float]] = {}
 
     def timed(name: str, work: Callable[[], Any]) -> Any:
@@ -23,9 +28,12 @@ def main() -> None:
         return result
 
     study = timed("import", _imported)
-    with study.Store.open(sys.argv[1]) as store:
+    with study.Store.open(arguments.store) as store:
         study_id = timed("study", lambda: study.create_study(store, "rates", [1])).study_id
         timed("comparison", lambda: study.compare(store, study_id))
+        if arguments.comparison:
+            print(json.dumps({"laps": laps}))
+            return
         found = timed("diagnosis", lambda: study.diagnose(store, study_id))
         page = timed("report", lambda: study.report_html(store, study_id))
     pictures = sum(bool(one.picture) for one in found.ranking)
