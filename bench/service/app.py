@@ -193,7 +193,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     page.install(app)
     openapi.install(app)
     app.add_middleware(Limits, access=access)
-    app.add_middleware(AuditTrail, add=trail.add)
+    app.add_middleware(AuditTrail, add=trail.add, strangers=access.strangers)
     app.add_middleware(Faults)
     app.add_middleware(Guard, hosts=access.hosts)
     return app
