@@ -77,6 +77,13 @@ UPLOADS = {
         ("rig.toml", RIG), ("a.json", b'[{"time_s":0},{"time_s":' + DIGITS + b"}]")
     ),
     "a large integer": lambda: zipped(("rig.toml", RIG), ("a.json", b'[{"time_s":0},{"time_s":1' + b"0" * 400 + b"}]")),
+    "events without end": lambda: with_table(
+        b"time_s,position_rad,current_a,event\n" + b"".join(b"%d,0,0,x\n" % row for row in range(20_000))
+    ),
+    "a condition without end": lambda: zipped(
+        ("rig.toml", RIG), ("a.csv", TABLE), ("trials.csv", b"file,kind,grease\na.csv,steps," + BLANKS + b"x\n")
+    ),
+    "a name without end": lambda: zipped(("rig.toml", b'name = "' + DIGITS + b'"\n'), ("a.csv", TABLE)),
     "empty zip": zipped,
     "truncated": lambda: with_table(TABLE)[:-30],
 }
