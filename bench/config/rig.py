@@ -11,6 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from bench.config.quantities import quantity
 from bench.errors import ConfigurationError
 
+LONGEST_NAME = 200  # characters
+
 
 class Section(BaseModel):
     """A table of a TOML file: unknown keys are refused, values are finite."""
@@ -21,7 +23,7 @@ class Section(BaseModel):
 class Motor(Section):
     """PM DC motor, values at the motor shaft."""
 
-    name: str | None = Field(None, description="Make and type")
+    name: str | None = Field(None, max_length=LONGEST_NAME, description="Make and type")
     resistance_ohm: float | None = quantity(None, "ohm", "Resistance of the winding", gt=0)
     inductance_h: float | None = quantity(None, "H", "Inductance of the winding", gt=0)
     torque_constant_n_m_a: float | None = quantity(None, "N m/A", "Torque constant", gt=0)
@@ -84,7 +86,7 @@ class Effort(Section):
 class Rig(Section):
     """One joint as its owner knows it."""
 
-    name: str = Field(description="Name of the joint")
+    name: str = Field(max_length=LONGEST_NAME, description="Name of the joint")
     joint: Literal["rotary", "linear"] = Field("rotary", description="A linear joint has positions in m")
     horizontal: bool = Field(False, description="True: gravity does no work on the joint")
     motor: Motor = Motor()

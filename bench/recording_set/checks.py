@@ -46,6 +46,8 @@ PLAUSIBLE: dict[str, Plausible] = {
     "position_m": Plausible(-100.0, 100.0, "mm"),
 }
 LOWEST_HZ, HIGHEST_HZ = 4.0, 2e5
+MOST_CONDITIONS, LONGEST_CONDITION = 100, 1000  # characters
+MOST_EVENTS, MOST_OF_EVENTS = 10_000, 2**20  # characters: whoever looks at a trial is sent all of them
 LARGEST = 1e100  # of any channel in any unit; the powers of more are no numbers
 
 
@@ -58,6 +60,9 @@ def check_recordings(recordings: Sequence[Recording], rig: Rig, mapping: Mapping
         RecordingSetError: a value outside physics, a load that no effort carries, no position or no effort in any
             trial, a wrap, two units.
     """
+    for recording in recordings:
+        if problem := _words(recording):
+            raise RecordingSetError(f"trial '{recording.name}'", problem)
     judged = [one for one in recordings if len(one) >= FEWEST_ROWS]
     for recording in judged:
         if problem := _endless(recording) or _rate(recording, mapping) or _outside(recording, mapping):
@@ -71,6 +76,21 @@ def check_recordings(recordings: Sequence[Recording], rig: Rig, mapping: Mapping
     for recording in judged:  # a wrap goes to and fro, too, and was looked for before
         if problem := _degrees(recording, mapping):
             raise RecordingSetError(f"trial '{recording.name}'", problem)
+
+
+def _words(recording: Recording) -> str:
+    """Text that is more than anybody reads; "" where it is not."""
+    conditions, events = recording.conditions, recording.events
+    if len(conditions) > MOST_CONDITIONS:
+        return f"has {len(conditions)} conditions; at most {MOST_CONDITIONS} are kept. Leave columns out of trials.csv"
+    for name, value in conditions.items():
+        if (length := len(name) + len(str(value))) > LONGEST_CONDITION:
+            return f"condition '{name[:20]}' has {length} characters; at most {LONGEST_CONDITION} are kept. Shorten it"
+    length = sum(len(event.name) + len(event.detail) for event in events)
+    if len(events) > MOST_EVENTS or length > MOST_OF_EVENTS:
+        allowed = f"at most {MOST_EVENTS} of {MOST_OF_EVENTS} are kept"
+        return f"has {len(events)} events of {length} characters; {allowed}. Leave the column 'event' out, or split it"
+    return ""
 
 
 def question(channel: str, largest: float, smallest: float, unit: str) -> str:

@@ -45,6 +45,7 @@ from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
 from bench.config.rig import Section
 from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.text.encoding import is_text
 from bench.recording_set.text.toml_file import parse_toml
 from bench.recording_set.units import TURN, UNITS, Unit, unit_named, units_of
 from compensator.lab.recordings.recording import CHANNELS, EVENT_COLUMN, Condition
@@ -166,7 +167,9 @@ class Mapping(Section):
     decimal: str | None = Field(
         None, pattern=r"^[.,]$", description="Decimal sign: a point or a comma. Told by the file"
     )
-    encoding: str | None = Field(None, description="Encoding of text files, such as cp1252. Told by the file")
+    encoding: Annotated[str, AfterValidator(is_text)] | None = Field(
+        None, description="Encoding of text files, such as cp1252. Told by the file"
+    )
     ignore: list[str] | Literal["rest"] = Field(
         default_factory=list, description='Columns that are not wanted; "rest": all that are not mapped'
     )

@@ -17,7 +17,7 @@ from bench.runs.lab_link import LabLink, word_of
 from bench.runs.lab_work import LabWork
 from bench.runs.lease import Lease
 from bench.runs.queue.conductor import Conductor
-from bench.service import compute
+from bench.service import compute, stops
 from bench.service.auth.access import Access
 from bench.service.auth.audit_trail import AuditTrail, AuditWriter
 from bench.service.auth.token_register import REFRESH_S
@@ -188,12 +188,13 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     app.state.life = secrets.token_hex(4)  # tells what was told by this process from what was told before
     app.state.live_events = LiveEvents(app.state, store, runner, lease)
     compute.install(app)
+    stops.install(app)
     problems.install(app)
     conditional.install(app)
     page.install(app)
     openapi.install(app)
     app.add_middleware(Limits, access=access)
-    app.add_middleware(AuditTrail, add=trail.add)
+    app.add_middleware(AuditTrail, add=trail.add, strangers=access.strangers)
     app.add_middleware(Faults)
     app.add_middleware(Guard, hosts=access.hosts)
     return app

@@ -24,6 +24,7 @@ from bench.service.auth.session import session_file, session_token
 from bench.service.auth.tls import Certificate
 from bench.service.auth.token_register import TokenRegister, first_token, has_valid_token
 from bench.service.auth.tokens import SAME_USER, chosen_token, token_file
+from bench.service.http.connections import Connection, allow_files
 from bench.service.lab import Lab, LabProcesses
 from bench.service.welcome import Place, welcome
 from bench.store import Store
@@ -66,6 +67,7 @@ class BenchServer(uvicorn.Server):
                 access_log=False,
                 timeout_graceful_shutdown=LINGER_S,
                 lifespan="on",
+                http=Connection,
                 proxy_headers=False,  # whoever connects says nothing of who it is
                 ssl_certfile=tls.chain if tls else None,
                 ssl_keyfile=tls.key if tls else None,
@@ -110,6 +112,7 @@ def serve_bench(
     """
     url = configuration.store.url
     chosen = chosen_token(token_file(url))
+    allow_files()
     with Store.open(url) as store:
         known = chosen is not None or has_valid_token(store)
         check_bind(address.host, token_configured=known, private=tls is not None or address.plain)

@@ -1,6 +1,7 @@
 """A connected actuator and the state that it is in: told, asked, or left in silence so that its watchdog stops it."""
 
 from collections.abc import Callable
+from math import isfinite
 from time import perf_counter
 from typing import Generic, TypeVar
 
@@ -129,7 +130,8 @@ class ActuatorSession(Generic[ActuatorT]):
             self.switch_off()
         sample = sample_of(reading, self._joint, self.state)
         if self.told is Status.QUICK_STOP:
-            stands = self._braking.stands(round(reading.counts))
+            # a position that is none does not tell: the time of a quick stop does
+            stands = isfinite(reading.counts) and self._braking.stands(round(reading.counts))
             if stands or perf_counter() > self._brakes_until_s:
                 self.switch_off()
         return sample

@@ -9,6 +9,7 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
+from bench.service.auth.attempts import BURST
 from bench.service.auth.audit_trail import AuditWriter
 from bench.store import Store
 from bench.store.errors import StoreLockedError
@@ -42,6 +43,7 @@ def test_deeds_are_on_record_with_who_and_what(idle):
 
 def test_refusals_are_on_record_without_the_token_that_was_tried(service, monkeypatch):
     monkeypatch.setattr(service.access.attempts, "_full_at_s", OrderedDict())
+    monkeypatch.setattr(service.access.strangers, "_full_at_s", OrderedDict())
     wrong = "wrong-token-of-this-test"
     service.stranger.post(f"/studies/77/search?token={wrong}", json={}, headers={"Authorization": f"Bearer {wrong}"})
     assert wait_for(service, "/studies/77/search", 401, "")["detail"] == ""
@@ -50,6 +52,17 @@ def test_refusals_are_on_record_without_the_token_that_was_tried(service, monkey
         dump = "\n".join(connection.iterdump())
     assert wrong not in dump
     assert TOKEN not in dump
+
+
+def test_strangers_do_not_fill_the_store(service, monkeypatch):
+    monkeypatch.setattr(service.access.strangers, "_full_at_s", OrderedDict())
+    for number in range(3 * BURST):
+        service.stranger.post(f"/nowhere/{number}")
+    wait_for(service, f"/nowhere/{BURST - 1}", 404, "")
+    service.client.post("/stop").raise_for_status()  # whoever has a token is noted whatever came before
+    wait_for(service, "/stop", 200, "environment")
+    found = service.client.get("/audit", params={"limit": 100}).json()["items"]
+    assert len([one for one in found if "/nowhere/" in one["path"]]) <= BURST + 2
 
 
 def test_reading_and_heartbeats_are_not(idle):

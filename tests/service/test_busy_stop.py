@@ -5,6 +5,7 @@ import socket
 import threading
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from urllib.parse import urlsplit
 
@@ -17,6 +18,8 @@ from bench.runs.live import LiveRows
 from bench.service.http import turns
 from bench.service.live import live_events
 from bench.service.live.status import Rows, rows_of
+from bench.service.stops import LATE
+from bench.store.tables.start_keys import StartKeys
 from tests.service import running_service as service_of_tests
 from tests.service.plain_http import NOBODY
 from tests.service.running_service import TOKEN, RunningService, running_service
@@ -125,6 +128,45 @@ def test_nobody_stands_behind_starts_that_wait_for_their_drive(tmp_path, busy, m
             assert service.stranger.get("/trials").status_code == 200
             assert time.monotonic() - begun_s < 10.0  # the drives take 30 s
             busy.over.set()
+
+
+STEPS = {"kind": "steps", "parameters": {"repeats": 5}, "pace": "real-time"}
+
+
+def test_a_start_that_waits_for_the_store_begins_nothing_after_a_stop(idle, monkeypatch):
+    begun, on, claim = threading.Event(), threading.Event(), StartKeys.claim
+
+    def waiting(*words):
+        begun.set()
+        assert on.wait(30.0)
+        return claim(*words)
+
+    monkeypatch.setattr(StartKeys, "claim", waiting)
+    headers = {"Idempotency-Key": "before-the-stop"}
+    with ThreadPoolExecutor(1) as pool:
+        start = pool.submit(idle.client.post, "/experiments", json=STEPS, headers=headers)
+        assert begun.wait(10.0)
+        assert idle.client.post("/stop").json()["was_running"] is False
+        on.set()
+        answer = start.result(30.0)
+    assert (answer.status_code, "STOP" in answer.json()["detail"]) == (409, True)
+    assert idle.runner.status().outcome != "running"
+    idle.client.post("/experiments", json=STEPS, headers=headers).raise_for_status()  # the key is free again
+
+
+def test_what_begins_beside_a_stop_is_stopped(idle, monkeypatch):
+    start, runner = idle.runner.start, idle.runner
+
+    def starting(*words):
+        with monkeypatch.context() as moment, ThreadPoolExecutor(1) as pool:
+            moment.setattr(runner, "stop", lambda *_: None)  # just before the runner begins to listen for this run
+            pool.submit(idle.client.post, "/stop").result(10.0)
+        return start(*words)
+
+    monkeypatch.setattr(runner, "start", starting)
+    idle.client.post("/experiments", json=STEPS).raise_for_status()
+    assert runner.wait(10.0)
+    assert runner.status().reason.endswith(LATE)
 
 
 def test_many_rows_for_a_listener_are_not_written_on_the_event_loop(idle, monkeypatch):

@@ -15,8 +15,9 @@ from fastapi import FastAPI, Request
 
 from bench.recording_set import import_recording_set, read_recording_set
 from bench.service import compute
-from bench.service.lab import NICENESS, Asker, LabEndedError, LabHere, LabProcesses
+from bench.service.lab import FIRST_TO_GO, NICENESS, Asker, LabEndedError, LabHere, LabProcesses
 from bench.service.server import Address, listen
+from bench.service.uploads import guess_upload, import_upload
 from bench.store import Store
 from bench.store.errors import NotFoundError
 from bench.study.compare import compare
@@ -24,6 +25,7 @@ from bench.study.create import create_study, describe
 from bench.study.diagnosis.diagnose import diagnose
 from tests.queue.waiting import wait_for
 from tests.service.recorded_joint import recording_set_zip
+from tests.service.running_service import running_service
 
 pytestmark = [
     pytest.mark.skipif(os.name != "posix", reason="signals of POSIX"),
@@ -97,6 +99,8 @@ def test_it_lets_other_programs_go_first_and_is_used_again(lab, others):
     (process,) = lab_processes() - others
     ours = os.getpriority(os.PRIO_PROCESS, 0)
     assert os.getpriority(os.PRIO_PROCESS, process) == min(ours + NICENESS, 19)
+    if (of_memory := Path(f"/proc/{process}/oom_score_adj")).exists():
+        assert of_memory.read_text().strip() == FIRST_TO_GO
 
 
 def test_one_that_was_killed_is_said_and_another_one_answers(lab, others):
@@ -186,3 +190,19 @@ def served(app: FastAPI) -> Iterator[str]:
         yield f"http://127.0.0.1:{listener.getsockname()[1]}"
         server.should_exit = True
         thread.join()
+
+
+def test_files_of_others_are_read_by_the_lab(tmp_path, monkeypatch):
+    """What hangs on a file, or takes all memory for it, is not the process that hears STOP."""
+    called, call_for = [], LabHere.call_for
+
+    def listening(self, asker, function, /, *args, **kwargs):
+        called.append(function)
+        return call_for(self, asker, function, *args, **kwargs)
+
+    monkeypatch.setattr(LabHere, "call_for", listening)
+    body, kind = recording_set_zip(), {"Content-Type": "application/zip"}
+    with running_service(tmp_path) as service:
+        for route in ("/recording-sets", "/recording-sets/guess"):
+            service.client.post(f"{route}?name=joint", content=body, headers=kind).raise_for_status()
+    assert called == [import_upload, guess_upload]

@@ -4,6 +4,7 @@ import io
 import os
 import random
 import tempfile
+import time
 import zipfile
 
 import pytest
@@ -14,6 +15,9 @@ RIG = b'name = "r"\n'
 TABLE = b"time_s,position_rad,current_a\n" + b"".join(b"0.%02d,0.%02d,0.1\n" % (row, row) for row in range(50))
 TYPE = {"Content-Type": "application/zip"}
 MUTATIONS = 60
+BLANKS, DIGITS = b" " * 20_000, b"1" * 200_000  # what a regular expression may go through again and again
+AT_ONCE_S = 5.0
+EVENTS = {"lists without end": b"[" * 60_000, "a moment beyond all": b'"[[' + b"9" * 400 + b',""x"",""y""]]"'}
 
 
 def zipped(*members: tuple[str | zipfile.ZipInfo, bytes]) -> bytes:
@@ -62,6 +66,24 @@ UPLOADS = {
     "NUL in the table": lambda: with_table(b"time_s,duty\n0,\x000\n"),
     "columns without end": lambda: with_table(b"time_s," + b"x," * 200_000 + b"\n"),
     "one endless line": lambda: with_table(b"time_s,duty\n" + b"1" * 5_000_000),
+    "blanks in the rig": lambda: zipped(("rig.toml", RIG + b'q=1\nnote="""\n' + BLANKS + b'x\n"""'), ("a.csv", TABLE)),
+    "dots in the rig": lambda: zipped(("rig.toml", RIG + b"a." * 250_000 + b"a=1\n"), ("a.csv", TABLE)),
+    "digits without a header": lambda: with_table(b"a;b\n" + DIGITS + b"x;1\n"),
+    "digits of a rate": lambda: with_table(b"sampl" + DIGITS + b"\na;b\n1;2\n1;2\n"),
+    "blanks in a name": lambda: with_table(b"a" + BLANKS + b"b,time_s\n0,0\n1,1\n"),
+    "digits in a stamp": lambda: with_table(b"time_s,t\n0,1:" + DIGITS + b"\n"),
+    "no encoding of files": lambda: zipped(("rig.toml", RIG), ("a.csv", TABLE), ("mapping.toml", b'encoding="hex"')),
+    "an integer without end": lambda: zipped(
+        ("rig.toml", RIG), ("a.json", b'[{"time_s":0},{"time_s":' + DIGITS + b"}]")
+    ),
+    "a large integer": lambda: zipped(("rig.toml", RIG), ("a.json", b'[{"time_s":0},{"time_s":1' + b"0" * 400 + b"}]")),
+    "events without end": lambda: with_table(
+        b"time_s,position_rad,current_a,event\n" + b"".join(b"%d,0,0,x\n" % row for row in range(20_000))
+    ),
+    "a condition without end": lambda: zipped(
+        ("rig.toml", RIG), ("a.csv", TABLE), ("trials.csv", b"file,kind,grease\na.csv,steps," + BLANKS + b"x\n")
+    ),
+    "a name without end": lambda: zipped(("rig.toml", b'name = "' + DIGITS + b'"\n'), ("a.csv", TABLE)),
     "empty zip": zipped,
     "truncated": lambda: with_table(TABLE)[:-30],
 }
@@ -76,7 +98,9 @@ def temporary(tmp_path, monkeypatch):
 
 def refused(service, body: bytes) -> str:
     before = service.store.experiments(limit=1)
+    began_s = time.process_time()
     answer = service.client.post("/recording-sets?name=fuzzed", content=body, headers=TYPE)
+    assert time.process_time() < began_s + AT_ONCE_S
     assert 400 <= answer.status_code < 500, answer.text
     assert answer.headers["content-type"] == "application/problem+json"
     assert service.store.experiments(limit=1) == before
@@ -90,6 +114,16 @@ def test_a_hostile_upload_is_refused_and_leaves_nothing(service, what):
     assert 10 < len(detail) < 2000
     assert tempfile.gettempdir() not in detail
     assert "/tmp" not in detail.replace("/tmp/a.csv", "")
+
+
+@pytest.mark.parametrize("what", EVENTS)
+def test_text_that_is_no_list_of_events_is_a_name(service, what):
+    table = b"time_s,position_rad,current_a,event\n0,0,0,\n0.1,0.1,0.1,%s\n0.2,0.2,0.1,\n" % EVENTS[what]
+    answer = service.client.post("/recording-sets?name=events", content=with_table(table), headers=TYPE)
+    assert answer.status_code in (201, 422), answer.text
+    if answer.status_code == 201:
+        trials = service.client.get(f"/trials?experiment_id={answer.json()['experiment_id']}").json()["items"]
+        assert service.client.get(f"/trials/{trials[0]['trial_id']}/csv").status_code == 200
 
 
 def test_the_same_set_unbroken_comes_in(service):

@@ -6,7 +6,7 @@ from types import ModuleType
 import numpy as np
 
 from bench.recording_set.errors import RecordingSetError
-from bench.recording_set.formats.column_table import Arrays, ColumnTable, check_unpacked, table_of
+from bench.recording_set.formats.column_table import SHOWN_OF_NAME, Arrays, ColumnTable, check_unpacked, table_of
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
@@ -23,6 +23,11 @@ def read(place: str, data: bytes) -> ColumnTable:
 
     def take(name: str, item: object) -> None:
         if isinstance(item, h5py.Dataset) and item.dtype.kind in "biufSV" and "#refs#" not in name:
+            if item.external or item.is_virtual:
+                message = (
+                    f"keeps '{name[:SHOWN_OF_NAME]}' in another file, which is not read; save it with all its data"
+                )
+                raise RecordingSetError(place, message)
             sizes.append(int(item.size) * int(item.dtype.itemsize))
             check_unpacked(place, sum(sizes))
             arrays[name.replace("/", ".")] = np.asarray(item)

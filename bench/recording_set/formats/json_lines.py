@@ -1,16 +1,18 @@
 """JSON: one object a line, a list of objects, or one object of lists."""
 
 import json
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from bench.recording_set.errors import RecordingSetError
-from bench.recording_set.formats.column_table import ColumnTable, table_of
+from bench.recording_set.formats.column_table import ColumnTable, check_unpacked, table_of
 from bench.recording_set.text.encoding import UTF_8, encoding_of
 
 JsonObject = Mapping[str, Any]
+GROWS = 16  # times: a number of two characters is an object of 28 bytes, and stands in a list
 
 
 def read(place: str, data: bytes) -> ColumnTable:
@@ -19,6 +21,7 @@ def read(place: str, data: bytes) -> ColumnTable:
     Raises:
         RecordingSetError: no JSON, or no columns of numbers.
     """
+    check_unpacked(place, GROWS * len(data))
     text = data.decode(encoding_of(data[:4096]) or UTF_8, errors="replace")
     rows = _rows(place, text)
     if isinstance(rows, dict):
@@ -31,7 +34,7 @@ def read(place: str, data: bytes) -> ColumnTable:
 def _rows(place: str, text: str) -> list[Any] | JsonObject:
     try:
         whole = json.loads(text)
-    except (json.JSONDecodeError, RecursionError):
+    except (ValueError, RecursionError):  # a number of thousands of digits is a plain ValueError
         whole = None
     if isinstance(whole, dict | list):
         return whole
@@ -41,7 +44,7 @@ def _rows(place: str, text: str) -> list[Any] | JsonObject:
             continue
         try:
             rows.append(json.loads(line))
-        except (json.JSONDecodeError, RecursionError) as error:
+        except (ValueError, RecursionError) as error:
             message = f"is no JSON ({error}); wanted one object a line, such as a number under each name"
             raise RecordingSetError(place, message, number) from error
     return rows
@@ -57,6 +60,13 @@ def _flat(row: JsonObject, prefix: str = "") -> Iterator[tuple[str, Any]]:
             yield f"{prefix}{name}", value
 
 
+def _float(value: float) -> float:
+    try:
+        return float(value)
+    except OverflowError:  # an integer beyond all of them
+        return math.inf if value > 0 else -math.inf
+
+
 def _array(values: list[Any]) -> Any:
     """Numbers where there are any and nothing else; else text."""
     if any(isinstance(value, list | dict) for value in values):
@@ -64,9 +74,9 @@ def _array(values: list[Any]) -> Any:
         if len(lengths) == 1 and all(isinstance(value, list) for value in values):
             try:
                 return np.array(values, dtype=float)
-            except (TypeError, ValueError):
+            except (TypeError, ValueError, OverflowError):
                 return [str(value) for value in values]
         return [str(value) for value in values]
     if all(value is None or isinstance(value, int | float) for value in values):
-        return np.array([np.nan if value is None else float(value) for value in values])
+        return np.array([np.nan if value is None else _float(value) for value in values])
     return ["" if value is None else str(value) for value in values]

@@ -10,6 +10,7 @@ from bench.recording_set.units import Unit, unit_named
 from compensator.lab.recordings.recording import CHANNELS
 
 _BRACKET = re.compile(r"^(?P<base>.*?)\s*[\[({<](?P<unit>[^\])}>]*)[\])}>]\s*$")
+LOOKED_AT = 200  # characters of a name
 _WORD = re.compile(r"[A-ZÄÖÜ]?[a-zäöüßàâéèêíóúñùµθωτφ]+|[A-ZÄÖÜ]+(?![a-z])|\d+")
 # SI unit -> quantity, where the words say nothing
 BY_UNIT = {
@@ -65,7 +66,7 @@ def read_name(name: str) -> Reading:
         return Reading(
             _OF_CHANNEL[name], unit_named(CHANNELS[name].unit) if name in CHANNELS else None, 10.0, frozenset()
         )
-    base, unit = _unit(name)
+    base, unit = _unit(name[:LOOKED_AT])
     words = _words(base)
     quantity = _quantity(words)
     if unit is not None and quantity and unit.si not in UNITS_OF.get(quantity, (unit.si,)):

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+from bench.recording_set.text.stamps import LONGEST
 from bench.recording_set.units import unit_named
 
 BLANKS = " "  # as a delimiter: any number of blanks and tabs
@@ -17,7 +18,8 @@ DELIMITERS = (",", ";", "\t", "|", BLANKS)
 COMMENTS = ("#", "%", "//", "!", "*")
 FEWEST_LINES, MOST_LINES = 2, 200  # of numbers that are looked at
 NUMERIC = 0.5  # of the cells of a line of numbers
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf)", re.ASCII | re.IGNORECASE)
+LONGEST_RATE = 200  # characters: what is longer says no rate, and would be looked at for long
+_NUMBER = re.compile(r"[+-]?(\d++(\.\d*+)?|\.\d++)([eE][+-]?\d++)?|[+-]?(nan|inf)", re.ASCII | re.IGNORECASE)
 _COMMA = re.compile(r"\d,\d")
 _STAMP = re.compile(r"[\dT:.,/+Z -]*\d[:/-]\d\d[\dT:.,/+Z -]*([AaPp]\.?[Mm]\.?)?|\d\d?\.\d\d?\.\d{4}[\d:., ]*")
 _RATE = re.compile(
@@ -112,7 +114,8 @@ def is_number(cell: str, decimal: str) -> bool:
 
 def is_stamp(cell: str) -> bool:
     """Whether a cell looks like date or time."""
-    return _STAMP.fullmatch(cell.strip()) is not None
+    text = cell.strip()
+    return len(text) <= LONGEST and _STAMP.fullmatch(text) is not None
 
 
 def _cells(line: str, delimiter: str) -> list[str]:
@@ -224,7 +227,7 @@ def _bracketed(unit: str) -> str:
 
 
 def _rate(preface: Sequence[str]) -> float | None:
-    for line in preface:
+    for line in (each[:LONGEST_RATE] for each in preface):
         if match := _RATE.search(line):
             value = _value(match["value"])
             return None if value is None else value * (1e3 if match["unit"].lower() == "khz" else 1.0)

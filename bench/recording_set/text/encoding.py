@@ -1,10 +1,12 @@
 """The encoding of a text file: told by its first bytes, by its user, or UTF-8, or else what Windows writes."""
 
 import codecs
+import string
 
 UTF_8 = "utf-8-sig"
 WINDOWS = "cp1252"
 _MARKS = {codecs.BOM_UTF8: UTF_8, codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
+NOT_OF_FILES = ("idna", "unicode_escape", "unicode-escape", "raw-unicode-escape", "utf-7")
 _CONTROL = frozenset(range(32)) - {9, 10, 12, 13, 26}
 
 
@@ -27,6 +29,21 @@ def encoding_of(head: bytes) -> str | None:
     except UnicodeDecodeError:
         return None if _CONTROL.intersection(head) else WINDOWS
     return UTF_8
+
+
+def is_text(encoding: str) -> str:
+    """The encoding, if it is one of text files.
+
+    Raises:
+        ValueError: it is unknown, or not of files.
+    """
+    try:
+        found = codecs.getincrementaldecoder(encoding)().decode(string.printable.encode(encoding), final=True)
+    except (LookupError, UnicodeError, TypeError, AttributeError, ValueError):
+        found = ""
+    if found != string.printable or codecs.lookup(encoding).name in NOT_OF_FILES:
+        raise ValueError(f"found '{encoding[:40]}'; wanted the encoding of a text file, such as utf-8 or cp1252")
+    return encoding
 
 
 def name_of(encoding: str) -> str:

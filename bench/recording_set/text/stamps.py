@@ -15,6 +15,7 @@ _LONG_FRACTION = re.compile(r"(\.\d{6})\d+")
 _AFTERNOON = re.compile(r"\s*(?P<half>[AaPp])\.?[Mm]\.?$")
 _EPOCH = datetime(1970, 1, 1)
 _DAY_S = 86400.0
+LONGEST = 64  # characters: more is no date or time, and would be looked at for long
 
 
 class NoStamp(ValueError):
@@ -34,6 +35,8 @@ def seconds_of(cells: Sequence[str]) -> FloatArray:
     Raises:
         NoStamp: a cell that is none.
     """
+    if too_long := [index for index, cell in enumerate(cells) if len(cell) > LONGEST]:
+        raise NoStamp(too_long[0], cells[too_long[0]])
     texts = [_LONG_FRACTION.sub(r"\1", _FRACTION.sub(".", cell.strip())) for cell in cells]
     if not texts:
         return np.empty(0)

@@ -16,6 +16,7 @@ from bench.recording_set.text.encoding import UTF_8, encoding_of, name_of
 CHUNK_CHARACTERS = 2**20
 LONGEST_RECORD = 64 * CHUNK_CHARACTERS
 HEAD_BYTES = 2**16  # from which the dialect is told
+LONGEST_NAME, SHOWN_OF_NAME = 500, 20  # characters of a column
 SI_TIME = "time_s"  # a header with it is one of a recording set, and needs no guess
 Row = list[str]
 _QUOTED_COMMA = re.compile(r'"[+-]?\d+,\d+"')
@@ -227,11 +228,16 @@ class Table:
     def _check_header(self) -> None:
         if not any(self.header):
             raise self.error("the file or its first line is empty; wanted a header of column names")
+        seen: set[str] = set()
         for position, name in enumerate(self.header):
+            if len(name) > LONGEST_NAME:
+                message = f"has a name of {len(name)} characters that begins with '{name[:SHOWN_OF_NAME]}'; at most "
+                raise self.error(f"{message}{LONGEST_NAME} are read. Give it a short one", self.header_line)
             if not name:
                 raise self.error(f"column {position + 1} has no name; give it one, or remove it", self.header_line)
-            if name in self.header[:position]:
+            if name in seen:
                 raise self.error("is there twice; remove one of the two", self.header_line, name)
+            seen.add(name)
 
 
 def quoted(cell: str) -> str:

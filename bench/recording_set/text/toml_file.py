@@ -1,6 +1,5 @@
 """TOML files as pydantic models; errors name the file, the line and the key."""
 
-import re
 import tomllib
 from collections import Counter
 from typing import TypeVar
@@ -11,9 +10,8 @@ from bench.config.validation import problems
 from bench.recording_set.errors import RecordingSetError
 
 MOST_BYTES = 2**20
+LONGEST_LINE = 2**14  # characters: tomllib's time grows with the square of a key's parts
 Model = TypeVar("Model", bound=BaseModel)
-_TABLE = re.compile(r"\s*\[+(?P<name>[^\[\]]+)\]")
-_KEY = re.compile(r"\s*(?P<name>[^=#\[\]]+?)\s*=")
 
 
 def parse_toml(data: bytes, model: type[Model], file: str) -> Model:
@@ -31,6 +29,7 @@ def parse_toml(data: bytes, model: type[Model], file: str) -> Model:
         raise RecordingSetError(file, f"is larger than {MOST_BYTES} bytes; that is no {model.__name__.lower()} file")
     try:
         text = data.decode("utf-8-sig")
+        _check_lines(text, file)
         return model.model_validate(tomllib.loads(text))
     except UnicodeDecodeError as error:
         message = f"found byte 0x{data[error.start]:02X}, which is not UTF-8; save the file as UTF-8"
@@ -44,20 +43,29 @@ def parse_toml(data: bytes, model: type[Model], file: str) -> Model:
         raise RecordingSetError(file, f"is no TOML: {error}") from error
 
 
+def _check_lines(text: str, file: str) -> None:
+    for number, line in enumerate(text.splitlines(), start=1):
+        if len(line) > LONGEST_LINE:
+            message = f"has {len(line)} characters in this line; allowed are {LONGEST_LINE}. Write it in several lines"
+            raise RecordingSetError(file, message, number)
+
+
 def line_of(text: str, location: tuple[int | str, ...]) -> int:
     """The line of a key, from 1; where the key is missing the line of what holds it."""
     table: tuple[int | str, ...] = ()
     counts: Counter[str] = Counter()
     best, depth = 1, 0
     for number, line in enumerate(text.splitlines(), start=1):
-        if header := _TABLE.match(line):
-            table = _keys(header["name"])
-            if line.lstrip().startswith("[["):
-                table += (counts[header["name"]],)
-                counts[header["name"]] += 1
+        told, before = line.lstrip(), line.partition("=")[0]
+        if told.startswith("["):
+            name = told.lstrip("[").partition("]")[0]
+            table = _keys(name)
+            if told.startswith("[["):
+                table += (counts[name],)
+                counts[name] += 1
             place = table
-        elif key := _KEY.match(line):
-            place = table + _keys(key["name"])
+        elif before != line and before.strip() and not any(sign in before for sign in "#[]"):
+            place = table + _keys(before)
         else:
             continue
         if len(place) > depth and place == location[: len(place)]:

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 from compensator.lab.recordings.recording import Condition, Event
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_NUMBER = re.compile(r"[+-]?(\d++(\.\d*+)?|\.\d++)([eE][+-]?\d++)?", re.ASCII)
 _FLAGS = {"true": True, "false": False}
 _FORMULA_SIGNS = ("=", "+", "-", "@")
 
@@ -80,8 +80,10 @@ def decode_events(cell: str, time_s: float) -> list[Event]:
     """The events of a cell in a row at a time [s]. Any text is an event's name."""
     if cell.startswith("[["):
         try:
-            return [Event(float(time), str(name), str(detail)) for time, name, detail in json.loads(cell)]
-        except (ValueError, TypeError):
+            found = [Event(float(time), str(name), str(detail)) for time, name, detail in json.loads(cell)]
+            if all(math.isfinite(event.time_s) for event in found):
+                return found
+        except (ValueError, TypeError, OverflowError, RecursionError):
             pass  # somebody's own text, which happens to begin so
     if not cell.strip():
         return []

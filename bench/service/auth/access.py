@@ -36,12 +36,14 @@ class Access:
         reads_open: True where reading needs no token (loopback only).
         hosts: host names under which the service may be addressed.
         attempts: wrong tokens so far.
+        strangers: requests without a token so far.
     """
 
     tokens: TokenRegister
     reads_open: bool = True
     hosts: frozenset[str] = LOOPBACK_NAMES
     attempts: Attempts = field(default_factory=Attempts)
+    strangers: Attempts = field(default_factory=Attempts)
     _looking: anyio.CapacityLimiter = field(default_factory=lambda: anyio.CapacityLimiter(1))
 
     async def caller(self, presented: str, address: str) -> Caller | None:

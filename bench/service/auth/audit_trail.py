@@ -12,6 +12,7 @@ from starlette.requests import Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from bench.runs import event_log
+from bench.service.auth.attempts import Attempts
 from bench.service.auth.tokens import Caller
 from bench.service.http.guard import SAFE_METHODS
 from bench.store.errors import StoreError
@@ -91,14 +92,19 @@ class AuditWriter:
 class AuditTrail:
     """ASGI middleware: an entry for each request that may change something, answered or refused.
 
+    Of requests without a token, of which none changes anything, an address has the first few noted, and then one every
+    few seconds: the store would grow by them.
+
     Args:
         app: what it stands in front of.
         add: takes an entry, without waiting.
+        strangers: counts requests without a token.
     """
 
-    def __init__(self, app: ASGIApp, add: Callable[[AuditEntry], None]) -> None:
+    def __init__(self, app: ASGIApp, add: Callable[[AuditEntry], None], strangers: Attempts) -> None:
         self._app = app
         self._add = add
+        self._strangers = strangers
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on, and note what was answered."""
@@ -118,21 +124,34 @@ class AuditTrail:
             await self._app(scope, receive, watching)
         finally:
             # too many wrong tokens: those before are noted
-            if status != 429 and not scope["state"].get("audit_left_out"):
+            if status != 429 and not scope["state"].get("audit_left_out") and self._is_noted(scope):
                 entry = _entry(scope, status)
                 self._add(entry)
                 event_log.note("request", _level(status), **_facts(entry))
+
+    def _is_noted(self, scope: Scope) -> bool:
+        if scope["state"].get("caller") is not None:
+            return True
+        address = _address(scope)
+        if self._strangers.wait_s(address):
+            return False
+        self._strangers.failed(address)
+        return True
+
+
+def _address(scope: Scope) -> str:
+    client = scope.get("client")
+    return client[0] if client else ""
 
 
 def _entry(scope: Scope, status: int) -> AuditEntry:
     state: dict[str, Any] = scope["state"]
     caller: Caller | None = state.get("caller")
-    client = scope.get("client")
     return AuditEntry(
         at_utc=datetime.now(UTC),
         token=caller.name if caller else "",
         role=str(caller.role) if caller else "",
-        client=client[0] if client else "",
+        client=_address(scope),
         method=scope["method"],
         path=_plain(scope["path"]),
         status=status,

@@ -19,7 +19,11 @@ MOST_DEPTH = 32  # lists and objects within each other
 MOST_PARTS = 2**13  # lists and objects in all: each is an object that the interpreter's collector walks over
 MOST_DIGITS = 400  # of a number: beyond a float's range and Python's own limit for integers
 LONGEST_S = 10.0  # until the body is here
-UNREAD = ("/stop", "/recording-sets")  # routes that wait for no body, or write it to a file as it comes
+UNREAD = (
+    "/stop",
+    "/recording-sets",
+    "/recording-sets/guess",
+)  # routes that wait for no body, or write it to a file as it comes
 _QUOTE, _DIGIT, _OPENS, _CLOSES = (
     bytes(one in kind for one in range(256)) for kind in (b'"', b"0123456789", b"[{", b"]}")
 )

@@ -101,9 +101,8 @@ def fingerprinted(request: Request, known: str, name: str) -> Response:
     media_type = "text/javascript" if name.endswith(".js") else mimetypes.guess_type(name)[0]
     if "gzip" not in request.headers.get("accept-encoding", ""):
         return FileResponse(files[name], media_type=media_type, headers=headers)
-    return Response(
-        compressed(files[name], known), media_type=media_type, headers={**headers, "Content-Encoding": "gzip"}
-    )
+    packed = compressed(files[name], fingerprint(files))
+    return Response(packed, media_type=media_type, headers={**headers, "Content-Encoding": "gzip"})
 
 
 class _Fresh(StaticFiles):

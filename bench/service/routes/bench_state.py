@@ -23,7 +23,8 @@ from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.live.status import Status, status_of
 from bench.service.routes.leases import LeaseOf, lease_now, require_lease
-from bench.service.services import CalibratorOf, ConductorOf, GuideOf, RunnerOf
+from bench.service.services import RunnerOf
+from bench.service.stops import stop_all
 from drivers.contract import Description
 
 router = api_router(tags=["bench"])
@@ -152,9 +153,7 @@ def channels() -> RecordedChannels:
     responses=problems(401, 403),
     openapi_extra={"requestBody": {"content": {"application/json": {"schema": Stop.model_json_schema()}}}},
 )
-async def stop(
-    runner: RunnerOf, conductor: ConductorOf, guide: GuideOf, calibrator: CalibratorOf, request: Request
-) -> Stopped:
+async def stop(runner: RunnerOf, request: Request) -> Stopped:
     """With any token, always, whoever has the bench. The control loop honours it within one cycle; it is on record.
 
     The queue is held, too: nothing more is started until somebody resumes. A commissioning or a calibration ends.
@@ -164,10 +163,7 @@ async def stop(
     found = runner.status()
     was_running = found.outcome == "running"
     reason = await _reason(request)
-    conductor.stop(reason)
-    guide.stop(reason)
-    calibrator.stop(reason)
-    runner.stop(reason)
+    stop_all(request.app, reason)
     note(request, f"stopped experiment {found.experiment_id}: {reason}" if was_running else "nothing was running")
     detail = (
         "Stop accepted: the joint is being powered off." if was_running else "Nothing was running; the joint is off."

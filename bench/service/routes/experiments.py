@@ -29,6 +29,7 @@ from bench.service.routes.leases import LeaseOf
 from bench.service.routes.queue_models import NewExperiment, Note, Tags
 from bench.service.routes.refused_fields import told_at_its_fields
 from bench.service.services import RunnerOf, StoreOf
+from bench.service.stops import StopsOf, StopsSince
 from bench.store import Store
 from bench.store.errors import StoreError
 from bench.store.tables.tags import LONGEST_TAG
@@ -98,6 +99,7 @@ async def start(
     request: Request,
     response: Response,
     body: NewExperiment,
+    stops: StopsOf,
     key: Key = None,
 ) -> Started:
     """Refused before any motion (422, with field, value, limit and unit) where it would leave the limits.
@@ -105,7 +107,7 @@ async def start(
     409 while another one runs, or somebody else has the bench. Watch it with GET /live, end it with POST /stop.
     """
 
-    started = await at_bench(request, _begun, runner, store, lease, caller, request, body, key)
+    started = await at_bench(request, _begun, runner, store, lease, caller, request, body, stops, key)
     response.headers["Location"] = f"{request.url.path}/{started.experiment_id}"
     return started
 
@@ -117,6 +119,7 @@ def _begun(
     caller: Caller,
     request: Request,
     body: NewExperiment,
+    stops: StopsSince,
     key: str | None,
 ) -> Started:
     """The experiment that has begun, now or with the same key before."""
@@ -124,7 +127,7 @@ def _begun(
     body.refuse_mistyped()  # a typing error is no failed start: nothing is recorded
 
     def begin() -> Started:
-        with lease.starting(caller.name), told_at_its_fields(find_kind(body.kind)):
+        with stops.starting(), lease.starting(caller.name), told_at_its_fields(find_kind(body.kind)):
             begun = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
         note(request, f"started experiment {begun} ({body.kind})")
         return Started(experiment_id=begun, kind=body.kind)

@@ -25,6 +25,7 @@ from bench.service.routes.queue_models import (
     plan_of,
 )
 from bench.service.services import ConductorOf, RunnerOf, StoreOf
+from bench.service.stops import StopsOf
 from bench.store.tables.queue import NewItem
 
 router = api_router(tags=["queue"], dependencies=[Depends(allow_read)])
@@ -127,9 +128,10 @@ def pause(conductor: ConductorOf, runner: RunnerOf, request: Request, caller: Op
     dependencies=HOLDER,
     responses=problems(401, 403, 409),
 )
-def resume(conductor: ConductorOf, runner: RunnerOf, request: Request, caller: Operator) -> Queue:
+def resume(conductor: ConductorOf, runner: RunnerOf, request: Request, caller: Operator, stops: StopsOf) -> Queue:
     """After a pause, after a stop or a failure, and after a start of the service. Look at the bench first."""
-    conductor.resume(caller.name)
+    with stops.starting():
+        conductor.resume(caller.name)
     note(request, "resumed the queue")
     return Queue.model_validate(queue_state(conductor, runner))
 

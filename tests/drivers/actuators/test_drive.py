@@ -1,10 +1,11 @@
 """Every kind of actuator: what the conformance tests, which know any drive, do not ask."""
 
 import time
-from math import isnan
+from math import isnan, nan
 
 import pytest
 
+from drivers.actuator.session import ActuatorSession
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveFault
 from tests.drivers.actuators.kinds import KINDS, MIT, PERIOD_S
@@ -58,6 +59,20 @@ def test_a_quick_stop_ends_in_power_off(kind, drive, device):
     torques = [drive.exchange(OFF).torque_n_m for _ in range(3) if not time.sleep(PERIOD_S)]
     assert moving.velocity_rad_s > 0.5
     assert not kind.damps or min(torques) < -0.002  # against the motion
+    for _ in range(120):
+        time.sleep(PERIOD_S)
+        last = drive.exchange(OFF)
+    assert last.status is Status.DISABLED
+    device.wait_for_power(False)
+
+
+@each_kind
+def test_a_quick_stop_ends_in_power_off_where_the_position_is_no_number(drive, device, monkeypatch):
+    take = ActuatorSession.take
+    drive.enable(Mode.TORQUE)
+    pushed(drive, 20, 0.02)
+    drive.quick_stop()
+    monkeypatch.setattr(ActuatorSession, "take", lambda self, reading: take(self, reading._replace(counts=nan)))
     for _ in range(120):
         time.sleep(PERIOD_S)
         last = drive.exchange(OFF)

@@ -18,6 +18,7 @@ from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.routes.leases import LeaseOf, require_lease
 from bench.service.services import CalibratorOf, ConductorOf
+from bench.service.stops import StopsOf
 
 router = api_router("/calibrations/run", tags=["calibrations"], dependencies=[Depends(allow_read)])
 steer = partial(router.post, dependencies=[Depends(require_lease)], responses=problems(401, 403, 409))
@@ -78,6 +79,7 @@ async def begin(
     conductor: ConductorOf,
     caller: Operator,
     request: Request,
+    stops: StopsOf,
     body: NewRun | None = None,
 ) -> Run:
     """F_load is searched, then curves are measured where they are known least, until each is known as asked.
@@ -89,8 +91,13 @@ async def begin(
     if conductor.running is not None:
         raise BusyError("the queue is running; pause it, or wait for its end")
     wish = Wish(tuple(wanted.loads_kg), wanted.accuracy_a, wanted.budget_s, tuple(wanted.duties))
+
+    def started() -> int:
+        with stops.starting():
+            return calibrator.begin(wish, wanted.after, wanted.note)
+
     with lease.starting(caller.name):
-        number = await at_bench(request, calibrator.begin, wish, wanted.after, wanted.note)
+        number = await at_bench(request, started)
     note(request, f"began calibration run {number}")
     return _represent(calibrator)
 
