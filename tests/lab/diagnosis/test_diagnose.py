@@ -374,7 +374,7 @@ def test_nothing_to_judge_is_an_error():
     made = recordings(trials=trials, seed=3)
     steady = [effect for effect in catalogue().values() if effect.rows == "sliding" and not effect.pipeline]
     everything = [effect.name for effect in steady if not effect.efforts]  # those of a voltage do not show in a torque
-    impossible = ("warm_up", "weight_friction", "weight_stribeck", "measured_load")
+    impossible = ("warm_up", "motor_warm_up", "weight_friction", "weight_stribeck", "measured_load")
     chosen = [name for name in everything if name not in impossible and "temperature" not in name]
     with pytest.raises(UnusableDataError, match="no effect of the catalogue can be judged"):
         diagnosis_of(made, tuple(chosen))

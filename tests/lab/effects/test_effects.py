@@ -170,6 +170,7 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "supply_sag": ((2.0,), lambda m: [predicted(m) * ((predicted(m) / 1.5 + 2.0 * m.velocity / 2.9) / 3.0) ** 2]),
     "back_emf_error": ((), lambda m: [m.velocity]),
     "winding_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * predicted(m)]),
+    "motor_warm_up": ((40.0,), lambda m: [(1.0 - np.exp(-(m.time_s + 30.0) / 40.0)) * predicted(m)]),
     "warm_up": ((40.0,), lambda m: [np.exp(-(m.time_s + 30.0) / 40.0) * np.sign(m.velocity)]),
     "frictional_lag": (
         (0.5, 0.05),
@@ -284,7 +285,7 @@ def test_orders_of_a_linear_joint_are_cycles_over_its_travel():
     assert EFFECTS["position_periodic_friction"].shapes(motion())[0] == (2.0,)
 
 
-CURRENT = ("winding_temperature", "torque_constant_saturation", "supply_sag", "dead_time")
+CURRENT = ("winding_temperature", "motor_warm_up", "torque_constant_saturation", "supply_sag", "dead_time")
 
 
 @pytest.mark.parametrize("name", CURRENT)

@@ -7,6 +7,7 @@ import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.effects.electrical import motor_warm_up
 from compensator.lab.effects.electrical.winding_temperature import EFFECT
 from compensator.lab.model.fit import fit_model
 from compensator.lab.recordings.recording import Recording
@@ -45,6 +46,10 @@ def test_only_an_effort_that_comes_from_a_voltage_holds_a_back_emf(effort, open_
     found = EFFECT.discrepancy(replace(moving, facts=replace(moving.facts, effort=effort)), ())
     assert found.shape == (open_columns, len(moving.velocity))
     assert all(one == pytest.approx((moving.temperature_c - 25.0) * moving.velocity) for one in found)
+    found = motor_warm_up.discrepancy(replace(moving, facts=replace(moving.facts, effort=effort)), (40.0,))
+    assert found.shape == (open_columns, len(moving.velocity))
+    warmth = 1.0 - np.exp(-(30.0 + moving.time_s) / 40.0)
+    assert all(one == pytest.approx(warmth * moving.velocity) for one in found)
 
 
 def test_motions_know_the_effort_that_was_chosen():

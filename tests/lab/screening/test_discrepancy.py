@@ -203,5 +203,6 @@ def test_every_effect_that_leaves_something_open_is_tested_here():
         *NEAR,
         "encoder_eccentricity",
         "warm_up",
-        "winding_temperature",  # in tests/lab/effects/test_winding_temperature.py
+        "winding_temperature",  # with the next one in tests/lab/effects/test_winding_temperature.py
+        "motor_warm_up",
     }
