@@ -18,7 +18,7 @@ ACCEPTED: dict[str, tuple[str, ...]] = {
     "lubricant": ("viscous_temperature",),
     "cogging": ("cogging",),
     "dead_time": ("dead_time",),
-    "thermal_drift": ("winding_temperature",),
+    "thermal_drift": ("winding_temperature", "motor_warm_up"),
     "eccentricity": ("encoder_eccentricity",),
     "load_friction": ("load_friction",),
     "weight_growth": ("weight_friction", "weight_stribeck"),
