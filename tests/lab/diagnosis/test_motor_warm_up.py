@@ -13,6 +13,7 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import SESSION_START, Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
+from tests.lab.effects.test_winding_temperature import BACK_EMF_V_S, COPPER_1_K, FERRITE_1_K, warm
 from tests.lab.synthetic import FACTS, Array, Joint, Plan, Truth, plans, recordings
 
 BETWEEN_S, WARM_S = 150.0, 900.0  # from start to start, and until a motor has 63 % of its warmth
@@ -25,8 +26,8 @@ def session(temperature_k: float | None = None) -> list[Plan]:
     starts = [{SESSION_START: BETWEEN_S * float(place)} for place in order]
     made = []
     for plan, start in zip(plans(repeats=2), starts, strict=True):
-        warm = None if temperature_k is None else 25.0 + temperature_k * float(warmth(start[SESSION_START]))
-        made.append(replace(plan, temperature_c=warm, conditions={**plan.conditions, **start}))
+        reads_c = None if temperature_k is None else 25.0 + temperature_k * float(warmth(start[SESSION_START]))
+        made.append(replace(plan, temperature_c=reads_c, conditions={**plan.conditions, **start}))
     return made
 
 
@@ -96,3 +97,17 @@ def test_a_temperature_that_did_not_go_by_the_session_tells_the_motor_that_follo
     trials = [replace(plan, conditions=begun) for plan, begun in zip(plans(repeats=2), starts, strict=True)]
     found = diagnose(fitted(recordings(Joint(extra=hot), trials=trials, seed=3)))
     assert named(found) == ("winding_temperature",)
+
+
+def test_a_voltage_grows_by_copper_and_magnets_and_the_back_emf_that_falls_with_them_is_nothing_more():
+    def unmeasured(one: Recording) -> Recording:
+        hot = warm(one)
+        return replace(hot, channels={name: x for name, x in hot.channels.items() if name != "temperature_c"})
+
+    made = [unmeasured(one) for one in recordings(trials=session(50.0), seed=3)]
+    dataset = make_dataset(made, replace(FACTS, back_emf_v_s_rad=BACK_EMF_V_S), Processing())
+    assert named(diagnose(fit_model(dataset, DEFAULT))) == ("motor_warm_up",)
+    filled = fit_model(dataset, [*DEFAULT, "motor_warm_up"])
+    risen_to = (1.0 + 50.0 * COPPER_1_K) / (1.0 - 50.0 * FERRITE_1_K)
+    assert filled.terms[-1].coefficients[0] == pytest.approx(risen_to - 1.0, abs=0.03)
+    assert diagnose(filled).verdict == "nothing"
