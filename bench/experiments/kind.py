@@ -1,10 +1,11 @@
 """What every kind of experiment offers: parameters, a plan of trials, a refusal before motion, a summary."""
 
+import sys
 from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, field_validator
 
 from bench.config.configuration import BenchConfiguration
 from bench.control.ending import OutcomeName
@@ -20,10 +21,23 @@ RESULTS_OF_ALL = {"cycles": "control cycles of the trial", "overruns": "of these
 """Results that each trial has, whatever its kind."""
 
 
+MOST_OF_A_LIST = 200
+SMALLEST = sys.float_info.min  # of a number that is not 0: what is divided by less is beyond all numbers
+
+
 class Parameters(BaseModel):
     """Parameters of an experiment. One definition for REST, form and command line."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    @field_validator("*")
+    @classmethod
+    def _can_be_planned(cls, value: Any) -> Any:
+        if isinstance(value, tuple) and len(value) > MOST_OF_A_LIST:
+            raise ValueError(f"has {len(value)} values; allowed are {MOST_OF_A_LIST}. Run several experiments")
+        if isinstance(value, float) and 0.0 < abs(value) < SMALLEST:
+            raise ValueError(f"allowed is 0, or at least {SMALLEST:g} in size")
+        return value
 
 
 @dataclass(frozen=True, slots=True)

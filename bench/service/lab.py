@@ -5,6 +5,7 @@ behind all other programs, it takes what they leave: the control loop, STOP and 
 """
 
 import os
+import resource
 import signal
 import threading
 from collections.abc import Callable, Iterator
@@ -24,6 +25,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 NICENESS = 10  # -20 .. 19: more is less of the processor
 FIRST_TO_GO = "1000"  # where the machine runs out of memory: the kernel then ends no control loop
+MOST_OF_MEMORY = 0.4  # share of the machine's that a process may have: two compute at once
 
 
 class LabEndedError(BenchError, ConnectionError):
@@ -225,6 +227,8 @@ def work(connection: Connection, url: str) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # at the terminal: the service ends this
     if hasattr(os, "nice"):
         os.nice(NICENESS)
+    limit = int(MOST_OF_MEMORY * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    resource.setrlimit(resource.RLIMIT_DATA, (limit, resource.getrlimit(resource.RLIMIT_DATA)[1]))
     with suppress(OSError):  # Linux alone has it
         Path("/proc/self/oom_score_adj").write_text(FIRST_TO_GO, encoding="ascii")
     with suppress(EOFError, OSError), Store.open(url) as store:
@@ -233,6 +237,9 @@ def work(connection: Connection, url: str) -> None:
             try:
                 with followed(connection.send):
                     answer = call.function(store, *call.args, **call.kwargs)
+            except MemoryError:
+                wanted = "it needs more memory than a computation may have here; ask for less, such as fewer trials"
+                answer = failure_of(0, LabEndedError(wanted))
             except Exception as error:
                 answer = failure_of(0, error)
             connection.send(answer)

@@ -76,11 +76,15 @@ def test_an_answer_that_nobody_reads_is_given_up(tmp_path, monkeypatch):
         assert got < plotly_file().stat().st_size
 
 
-def test_stop_is_heard_beside_more_silent_connections_than_a_process_may_have_files(tmp_path):
+LISTEN = b"GET /api/v1/live HTTP/1.1\r\nHost: localhost\r\n\r\n"
+
+
+@pytest.mark.parametrize("sent", [b"", LISTEN], ids=["silent", "listening"])
+def test_stop_is_heard_beside_more_connections_than_a_process_may_have_files(tmp_path, sent):
     headers = {"Authorization": f"Bearer {TOKEN}"}
     with started_process(tmp_path) as (process, url), ExitStack() as many:
         resource.prlimit(process.pid, resource.RLIMIT_NOFILE, (FEW_FILES, FEW_FILES))
         for _ in range(2 * FEW_FILES):
-            many.enter_context(connected(url))
+            many.enter_context(connected(url, sent))
         answer = httpx.post(f"{url}/api/v1/stop", headers=headers, timeout=5.0, verify=NOBODY)
         assert answer.status_code == 200

@@ -41,6 +41,24 @@ def test_what_the_bench_refuses_is_said_at_its_field(service, kind, parameters, 
     assert words in problem["message"]
 
 
+@pytest.mark.parametrize(
+    ("kind", "parameters", "words"),
+    [
+        ("load-sweep", {"loads_kg": [0.0] * 201}, "has 201 values; allowed are 200"),
+        ("load-sweep", {"loads_kg": [0.0] * 200, "angles_rad": [0.0] * 200}, "make 40000 trials; allowed are 5000"),
+        ("excitation", {"loads_kg": [0.0] * 200, "repeats": 100}, "allowed are 5000"),
+        ("breakaway-ramps", {"rates_a_s": [1.0] * 60, "dwells_s": [1.0] * 100}, "make 6000 trials"),
+        ("hold-and-soak", {"soak_s": 86_400, "probe_every_s": 1}, "make 172801 trials"),
+        ("multisine", {"wave_s": 600, "waves": 1000}, "at most 7200 s"),
+        ("breakaway-ramps", {"slip_speed_rad_s": 5e-324}, "at least 2.2"),
+        ("multisine", {"wave_s": 5e-324}, "at least 2.2"),
+    ],
+)
+def test_what_nobody_records_is_not_planned(service, kind, parameters, words):
+    answer = plan(service, kind, **parameters)
+    assert (answer.status_code, words in answer.text) == (422, True), answer.text
+
+
 @pytest.mark.parametrize("path", ["/experiments/plan", "/experiments"])
 @pytest.mark.parametrize(
     ("kind", "parameters", "field", "found", "allowed", "unit"),

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -9,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import httpx
+import numpy as np
 import pytest
 import uvicorn
 from fastapi import FastAPI, Request
@@ -190,6 +192,17 @@ def served(app: FastAPI) -> Iterator[str]:
         yield f"http://127.0.0.1:{listener.getsockname()[1]}"
         server.should_exit = True
         thread.join()
+
+
+def all_memory(_store):
+    return np.empty(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"), np.uint8).shape
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems bound less")
+def test_one_that_wants_all_memory_is_refused_it_in_words(lab):
+    with pytest.raises(LabEndedError, match="more memory"):
+        lab.call(all_memory)
+    assert lab.call(study_names) is not None
 
 
 def test_files_of_others_are_read_by_the_lab(tmp_path, monkeypatch):

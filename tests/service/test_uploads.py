@@ -68,6 +68,7 @@ UPLOADS = {
     "one endless line": lambda: with_table(b"time_s,duty\n" + b"1" * 5_000_000),
     "blanks in the rig": lambda: zipped(("rig.toml", RIG + b'q=1\nnote="""\n' + BLANKS + b'x\n"""'), ("a.csv", TABLE)),
     "dots in the rig": lambda: zipped(("rig.toml", RIG + b"a." * 250_000 + b"a=1\n"), ("a.csv", TABLE)),
+    "keys of many parts": lambda: zipped(("rig.toml", RIG + (b"a." * 8000 + b"a=1\n") * 20), ("a.csv", TABLE)),
     "digits without a header": lambda: with_table(b"a;b\n" + DIGITS + b"x;1\n"),
     "digits of a rate": lambda: with_table(b"sampl" + DIGITS + b"\na;b\n1;2\n1;2\n"),
     "blanks in a name": lambda: with_table(b"a" + BLANKS + b"b,time_s\n0,0\n1,1\n"),

@@ -17,7 +17,7 @@ from bench.errors import LimitError, OutOfRange, quantity_message
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.excursion import BRAKING_SHARE, comparing_cycles, slip_index
 from bench.experiments.parts.joint import Joint, Part
-from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
+from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_many, refuse_speed
 from bench.json_types import Value, objects
 from drivers.contract import Command, Mode
 
@@ -165,6 +165,8 @@ def _plan(parameters: BreakawayRampsParameters, configuration: BenchConfiguratio
 
 
 def _refuse(parameters: BreakawayRampsParameters, configuration: BenchConfiguration) -> None:
+    trials = len(parameters.rates_a_s) * len(parameters.dwells_s) * parameters.repeats
+    refuse_many(trials, "rates_a_s, dwells_s and repeats")
     refuse_load("load_kg", parameters.load_kg, configuration)
     refuse_angles("angle_rad", [0.0, parameters.angle_rad], parameters.excursion_rad + RUN_OUT_RAD, configuration)
     refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)

@@ -13,7 +13,7 @@ from bench.control.cycle import Procedure
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint
-from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
+from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_many, refuse_speed
 from bench.experiments.parts.waveforms import WAVEFORMS, sampled
 from bench.json_types import Value, numbers
 
@@ -84,6 +84,7 @@ def _plan(parameters: ExcitationParameters, configuration: BenchConfiguration) -
 
 
 def _refuse(parameters: ExcitationParameters, configuration: BenchConfiguration) -> None:
+    refuse_many(_trials(parameters), "loads_kg, waveforms and repeats")
     for load_kg in parameters.loads_kg:
         refuse_load("a load of loads_kg", load_kg, configuration)
     reach_rad = parameters.amplitude_rad
@@ -92,9 +93,12 @@ def _refuse(parameters: ExcitationParameters, configuration: BenchConfiguration)
     refuse_currents(configuration)
 
 
+def _trials(parameters: ExcitationParameters) -> int:
+    return len(parameters.loads_kg) * len(parameters.waveforms) * parameters.repeats
+
+
 def _duration_s(parameters: ExcitationParameters, _configuration: BenchConfiguration) -> float:
-    trials = len(parameters.loads_kg) * len(parameters.waveforms) * parameters.repeats
-    return trials * (parameters.duration_s + REST_S)
+    return _trials(parameters) * (parameters.duration_s + REST_S)
 
 
 def _summarise(_parameters: ExcitationParameters, trials: list[FinishedTrial]) -> dict[str, Value]:

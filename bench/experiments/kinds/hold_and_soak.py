@@ -16,7 +16,14 @@ from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, Tr
 from bench.experiments.parts.excursion import BRAKING_SHARE
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
-from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
+from bench.experiments.parts.refusal import (
+    refuse_angles,
+    refuse_currents,
+    refuse_load,
+    refuse_many,
+    refuse_slow_move,
+    refuse_speed,
+)
 from bench.json_types import Value, number
 
 OVERSHOOT_RAD = 0.1  # of the servo, at most
@@ -153,6 +160,7 @@ def _plan(parameters: HoldAndSoakParameters, configuration: BenchConfiguration) 
 
 
 def _refuse(parameters: HoldAndSoakParameters, configuration: BenchConfiguration) -> None:
+    refuse_many(2 * len(parameters.soaks_s) + 1, "soak_s and probe_every_s")
     refuse_load("load_kg", parameters.load_kg, configuration)
     refuse_angles("hold_rad", [0.0, parameters.hold_rad], OVERSHOOT_RAD, configuration)
     refuse_angles("probe_rad", [-parameters.probe_rad, parameters.probe_rad], OVERSHOOT_RAD, configuration)

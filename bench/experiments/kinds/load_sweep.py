@@ -11,7 +11,14 @@ from bench.config.quantities import quantity
 from bench.config.reflected_load import reflected_load_kg
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.at_rest import AT_REST_RESULTS, RIGHT_ANGLE_RAD, duration_s, measure_at_rest
-from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
+from bench.experiments.parts.refusal import (
+    refuse_angles,
+    refuse_currents,
+    refuse_load,
+    refuse_many,
+    refuse_slow_move,
+    refuse_speed,
+)
 from bench.json_types import Value, number
 
 PAPER_LOADS_KG = tuple(round(0.01 * step, 2) for step in range(11))
@@ -46,6 +53,7 @@ def _plan(parameters: LoadSweepParameters, configuration: BenchConfiguration) ->
 
 
 def _refuse(parameters: LoadSweepParameters, configuration: BenchConfiguration) -> None:
+    refuse_many(_trials(parameters), "loads_kg, angles_rad and repeats")
     for load_kg in parameters.loads_kg:
         refuse_load("a load of loads_kg", load_kg, configuration)
     margin_rad = configuration.search.excursion_rad
@@ -57,9 +65,12 @@ def _refuse(parameters: LoadSweepParameters, configuration: BenchConfiguration) 
     reflected_load_kg(0.0, RIGHT_ANGLE_RAD, configuration.rig)
 
 
+def _trials(parameters: LoadSweepParameters) -> int:
+    return len(parameters.loads_kg) * len(parameters.angles_rad) * parameters.repeats
+
+
 def _duration_s(parameters: LoadSweepParameters, configuration: BenchConfiguration) -> float:
-    trials = len(parameters.loads_kg) * len(parameters.angles_rad) * parameters.repeats
-    return trials * duration_s(configuration, parameters.searches)
+    return _trials(parameters) * duration_s(configuration, parameters.searches)
 
 
 def _summarise(_parameters: LoadSweepParameters, trials: list[FinishedTrial]) -> dict[str, Value]:

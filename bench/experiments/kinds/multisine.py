@@ -17,6 +17,7 @@ from bench.experiments.parts.injection import (
     refuse_injection,
     summarise_injection,
 )
+from bench.experiments.parts.refusal import refuse_long_play
 from bench.experiments.parts.signal_play import PLAYED_RESULTS
 from bench.experiments.parts.waveforms import FADE_S, fade
 from bench.json_types import Value
@@ -60,6 +61,7 @@ def multisine(parameters: MultisineParameters, period_s: float) -> FloatArray:
 
 
 def _refuse(parameters: MultisineParameters, configuration: BenchConfiguration) -> None:
+    refuse_long_play("waves x wave_s", parameters.duration_s)
     refuse_band(parameters, configuration)
     if not len(frequencies_hz(parameters)):
         raise LimitError(

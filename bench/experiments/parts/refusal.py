@@ -5,11 +5,13 @@ from math import pi, radians
 
 from bench.config.configuration import BenchConfiguration
 from bench.control.servo import closes_positions_alone
-from bench.errors import ConfigurationError, LimitError, OutOfRange, quantity_message
+from bench.errors import ConfigurationError, LimitError, OutOfRange, ParameterError, quantity_message
 from bench.experiments.parts.profile import Trapezoid
 from drivers.contract import Description, Mode
 
 LONGEST_MOVE_S = 600.0
+MOST_TRIALS = 5000  # of an experiment
+LONGEST_PLAYED_S = 7200.0  # of a motion whose every value is known before: two hours at 1 kHz are 58 MB
 
 
 def refuse_coasting(configuration: BenchConfiguration) -> None:
@@ -20,6 +22,19 @@ def refuse_coasting(configuration: BenchConfiguration) -> None:
             "while it moves. Have it coast at a current of 0 (coast-down: released = 'current'), or the bench set the "
             "brake ('output')"
         )
+
+
+def refuse_many(trials: int, of: str) -> None:
+    """Raise `ParameterError` for an experiment of more trials than anybody records; `of` says what they come from."""
+    if trials > MOST_TRIALS:
+        raise ParameterError(f"{of} make {trials} trials; allowed are {MOST_TRIALS}. Run several experiments")
+
+
+def refuse_long_play(name: str, duration_s: float) -> None:
+    """Raise `LimitError` for a motion of more values than are kept at once."""
+    if duration_s > LONGEST_PLAYED_S:
+        message = quantity_message(name, duration_s, f"at most {LONGEST_PLAYED_S:g}", "s", "Play it several times")
+        raise LimitError(message, OutOfRange(name, duration_s, "s", high=LONGEST_PLAYED_S))
 
 
 def refuse_load(name: str, load_kg: float, configuration: BenchConfiguration) -> None:

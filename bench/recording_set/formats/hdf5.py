@@ -35,7 +35,7 @@ def read(place: str, data: bytes) -> ColumnTable:
     try:
         with h5py.File(io.BytesIO(data), "r") as file:
             file.visititems(take)
-    except RecordingSetError:
+    except (RecordingSetError, MemoryError):
         raise
     except Exception as error:  # damaged bytes break the library anywhere
         raise RecordingSetError(place, f"is no HDF5 file, or a damaged one ({error}); save it again") from error

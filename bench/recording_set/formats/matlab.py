@@ -27,7 +27,7 @@ def read(place: str, data: bytes) -> ColumnTable:
     try:
         check_unpacked(place, 8 * sum(math.prod(shape) for _, shape, _ in whosmat(io.BytesIO(data))))
         found = loadmat(io.BytesIO(data), squeeze_me=True, struct_as_record=False, simplify_cells=True)
-    except RecordingSetError:
+    except (RecordingSetError, MemoryError):
         raise
     except Exception as error:  # damaged bytes break the library anywhere
         raise RecordingSetError(place, f"is no MATLAB file, or a damaged one ({error}); save it again") from error

@@ -21,7 +21,7 @@ def read(place: str, data: bytes) -> ColumnTable:
                 check_unpacked(place, sum(info.file_size for info in archive.infolist()))
         found = np.load(io.BytesIO(data), allow_pickle=False)
         arrays = {"": found} if isinstance(found, np.ndarray) else {name: found[name] for name in found.files}
-    except RecordingSetError:
+    except (RecordingSetError, MemoryError):
         raise
     except ValueError as error:
         message = f"cannot be read ({error}); save plain arrays: numpy.savez(file, time_s=..., position_rad=...)"

@@ -25,6 +25,8 @@ def read(place: str, data: bytes) -> ColumnTable:
         # one value repeated packs to nothing, even before compression
         check_unpacked(place, max(unpacked, 8 * opened.metadata.num_rows * opened.metadata.num_columns))
         found = opened.read()
+    except pyarrow.ArrowMemoryError:  # a MemoryError as well
+        raise
     except (pyarrow.ArrowException, OSError, ValueError) as error:
         raise RecordingSetError(place, f"is no Parquet file, or a damaged one ({error}); save it again") from error
     arrays: Arrays = {}

@@ -47,7 +47,11 @@ def read_table(container: Container, file: str) -> ColumnTable:
         data = opened.read(MOST_BYTES + 1)
     if len(data) > MOST_BYTES:
         raise RecordingSetError(where, f"is larger than {MOST_BYTES} bytes; split the trial into several files")
-    return _READERS[_ending(file)](where, data)
+    try:
+        return _READERS[_ending(file)](where, data)
+    except MemoryError as error:
+        message = "needs more memory than there is to be read; split the trial into several files, or save it as CSV"
+        raise RecordingSetError(where, message) from error
 
 
 def check_readable(container: Container, file: str) -> None:

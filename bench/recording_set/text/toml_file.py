@@ -1,5 +1,6 @@
 """TOML files as pydantic models; errors name the file, the line and the key."""
 
+import re
 import tomllib
 from collections import Counter
 from typing import TypeVar
@@ -10,7 +11,9 @@ from bench.config.validation import problems
 from bench.recording_set.errors import RecordingSetError
 
 MOST_BYTES = 2**20
-LONGEST_LINE = 2**14  # characters: tomllib's time grows with the square of a key's parts
+LONGEST_LINE = 2**14  # characters
+MOST_PARTS = 64  # of a key, with a point between them: tomllib's time and memory grow with their square
+_BETWEEN_KEYS = re.compile(r"[=,#{}\[\]:;()]")  # in no key without quotation marks; numbers stand between them, too
 Model = TypeVar("Model", bound=BaseModel)
 
 
@@ -47,6 +50,9 @@ def _check_lines(text: str, file: str) -> None:
     for number, line in enumerate(text.splitlines(), start=1):
         if len(line) > LONGEST_LINE:
             message = f"has {len(line)} characters in this line; allowed are {LONGEST_LINE}. Write it in several lines"
+            raise RecordingSetError(file, message, number)
+        if (parts := max(piece.count(".") for piece in _BETWEEN_KEYS.split(line)) + 1) > MOST_PARTS:
+            message = f"has {parts} words with points between them in this line; allowed are {MOST_PARTS}"
             raise RecordingSetError(file, message, number)
 
 

@@ -13,27 +13,35 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 HEAD_S = 10.0  # until the head of a request is here, from when the connection was open or its first byte came
 UNREAD_S = 60.0  # that an answer may wait for whoever asked to read on
 MOST_SILENT = 1024  # connections without a request; of more, the one that has been silent longest is closed
-_OF_FILES = 0.5  # share of what the process may open, where that is little
+OTHER_FILES = 200  # of the process: those of the store, the log, the bench process; and what comes beside a connection
+_OF_FILES = 0.5  # share of what the process may open that connections have at least
 
 
 class Connection(H11Protocol):
-    """uvicorn's, ended when it is silent for too long."""
+    """uvicorn's, ended when it is silent for too long, or where there are too many: STOP comes as one more."""
 
-    _silent: dict["Connection", asyncio.TimerHandle] = {}  # noqa: RUF012  of the process, oldest first
+    _open: dict["Connection", None] = {}  # noqa: RUF012  of the process; the one whose request came longest ago first
+    _silent: dict["Connection", asyncio.TimerHandle] = {}  # noqa: RUF012  of these, oldest first
     _unread: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Wait for a request."""
         super().connection_made(transport)
+        self._open[self] = None
+        if len(self._open) > most_open():
+            next(iter(self._silent or self._open))._end()
         self._look()
 
     def data_received(self, data: bytes) -> None:
         """Wait on, or for no longer."""
         super().data_received(data)
+        if self in self._open:  # to the end: it has asked last
+            self._open[self] = self._open.pop(self)
         self._look()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Wait no longer."""
+        self._open.pop(self, None)
         self._forget()
         self._read_on()
         super().connection_lost(exc)
@@ -58,6 +66,7 @@ class Connection(H11Protocol):
                 next(iter(self._silent))._end()
 
     def _end(self) -> None:
+        self._open.pop(self, None)
         self._forget()
         self.transport.abort()
 
@@ -73,7 +82,16 @@ class Connection(H11Protocol):
 
 def most_silent() -> int:
     """How many connections may be without a request."""
-    return min(MOST_SILENT, int(_OF_FILES * resource.getrlimit(resource.RLIMIT_NOFILE)[0]))
+    return min(MOST_SILENT, int(_OF_FILES * _files()))
+
+
+def most_open() -> int:
+    """How many connections may be open."""
+    return max(_files() - OTHER_FILES, int(_OF_FILES * _files()))
+
+
+def _files() -> int:
+    return resource.getrlimit(resource.RLIMIT_NOFILE)[0]
 
 
 def allow_files() -> None:
