@@ -1,13 +1,17 @@
 """Bad input: the message names file, line and column, what was found and what is wanted."""
 
+import io
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 from bench.recording_set import Mapping, RecordingSetError, read_recording_set
+from bench.recording_set.formats import column_table, matlab
 from bench.recording_set.mapping import MappedTrial, Renamed
+from bench.recording_set.text.toml_file import parse_toml
 from tests.recording_set.examples import GOOD, write_set
 
 # what is wrong: the CSV, and what the message must say
@@ -203,3 +207,18 @@ def test_a_load_in_grams_comes_in_through_the_mapping_that_the_message_names(tmp
     mapping = Mapping(trials_columns={"load_kg": Renamed(source="load_g", scale=0.001)})
     (recording,) = read_recording_set(folder, mapping).recordings
     assert recording.conditions == {"load_kg": pytest.approx(0.1)}
+
+
+def test_a_structure_of_matlab_that_unpacks_to_too_much_is_refused_before(monkeypatch):
+    buffer = io.BytesIO()
+    savemat(buffer, {"all": {"time_s": np.zeros(300_000), "position_rad": np.zeros(300_000)}}, do_compression=True)
+    for module in (matlab, column_table):
+        monkeypatch.setattr(module, "MOST_UNPACKED", 2_000_000)
+    with pytest.raises(RecordingSetError, match=r"unpacks to .* at most 2000000"):
+        matlab.read("a.mat", buffer.getvalue())
+
+
+@pytest.mark.parametrize("encoding", ["hex", "idna", "punycode", "undefined", "unicode_escape", "none-such", ""])
+def test_an_encoding_that_no_file_has_is_refused(encoding):
+    with pytest.raises(RecordingSetError, match="encoding of a text file"):
+        parse_toml(f"encoding = '{encoding}'\n".encode(), Mapping, "mapping.toml")

@@ -2,16 +2,19 @@
 
 import io
 import math
+import zlib
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.formats import hdf5
-from bench.recording_set.formats.column_table import ColumnTable, check_unpacked, table_of
+from bench.recording_set.formats.column_table import MOST_UNPACKED, ColumnTable, check_unpacked, table_of
 
 _HDF5 = b"MATLAB 7.3"
+_COMPRESSED = 15  # type of an element
+_PIECE = 2**20  # bytes
 
 
 def read(place: str, data: bytes) -> ColumnTable:
@@ -26,6 +29,7 @@ def read(place: str, data: bytes) -> ColumnTable:
 
     try:
         check_unpacked(place, 8 * sum(math.prod(shape) for _, shape, _ in whosmat(io.BytesIO(data))))
+        check_unpacked(place, _unpacked_bytes(data))  # of a structure whosmat tells nothing
         found = loadmat(io.BytesIO(data), squeeze_me=True, struct_as_record=False, simplify_cells=True)
     except (RecordingSetError, MemoryError):
         raise
@@ -33,6 +37,25 @@ def read(place: str, data: bytes) -> ColumnTable:
         raise RecordingSetError(place, f"is no MATLAB file, or a damaged one ({error}); save it again") from error
     arrays = dict(_flat({name: value for name, value in found.items() if not name.startswith("__")}))
     return table_of(place, arrays)
+
+
+def _unpacked_bytes(data: bytes) -> int:
+    """How much the compressed elements of a file of version 5 to 7 unpack to, without keeping it; stops where enough.
+
+    After its header of 128 bytes, a file is elements of a type, a number of bytes, and these (MAT-File Format, ch. 1).
+    """
+    order: Literal["little", "big"] = "little" if data[126:128] == b"IM" else "big"
+    place, unpacked = 128, 0
+    while place + 8 <= len(data) and unpacked <= MOST_UNPACKED:
+        kind, size = (int.from_bytes(data[place + at : place + at + 4], order) for at in (0, 4))
+        place += 8
+        if kind == _COMPRESSED:
+            unpacking, rest = zlib.decompressobj(), data[place : place + size]
+            while rest and unpacked <= MOST_UNPACKED:
+                unpacked += len(unpacking.decompress(rest, _PIECE))
+                rest = unpacking.unconsumed_tail
+        place += size
+    return unpacked
 
 
 def _flat(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

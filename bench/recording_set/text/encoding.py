@@ -6,7 +6,7 @@ import string
 UTF_8 = "utf-8-sig"
 WINDOWS = "cp1252"
 _MARKS = {codecs.BOM_UTF8: UTF_8, codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
-NOT_OF_FILES = ("idna", "unicode_escape", "unicode-escape", "raw-unicode-escape", "utf-7")
+NOT_OF_FILES = ("idna", "punycode", "unicode_escape", "unicode-escape", "raw-unicode-escape", "utf-7")
 _CONTROL = frozenset(range(32)) - {9, 10, 12, 13, 26}
 
 

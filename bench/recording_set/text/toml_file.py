@@ -42,6 +42,8 @@ def parse_toml(data: bytes, model: type[Model], file: str) -> Model:
         first, *others = problems(error, model=model)
         more = "".join(f"\n{file}, line {line}: {problem}" for line, problem in zip(lines[1:], others, strict=True))
         raise RecordingSetError(file, first + more, lines[0]) from error
+    except RecordingSetError:
+        raise
     except (ValueError, RecursionError) as error:  # a number of thousands of digits is a plain ValueError
         raise RecordingSetError(file, f"is no TOML: {error}") from error
 
