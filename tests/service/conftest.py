@@ -5,7 +5,6 @@ from typing import Any
 
 import pytest
 
-from bench.store.database import Database
 from tests.service.running_service import RunningService, running_service
 
 
@@ -13,7 +12,8 @@ from tests.service.running_service import RunningService, running_service
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningService]:
     with running_service(tmp_path_factory.mktemp("service")) as running, pytest.MonkeyPatch.context() as patch:
         for way in ("reading", "writing"):
-            patch.setattr(Database, way, not_where_stop_is_heard(getattr(Database, way)))
+            database = running.store._database
+            patch.setattr(database, way, not_where_stop_is_heard(getattr(database, way)))
         yield running
 
 

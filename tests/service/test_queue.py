@@ -175,7 +175,11 @@ def test_a_queue_comes_in_pages_and_is_told_as_a_whole(queue):
     queue.client.post("/queue/pause").raise_for_status()
     ids = add(queue, STEPS, STEPS, STEPS)
     whole = state(queue)
-    assert ([one["item_id"] for one in whole["waiting"]], whole["waiting_count"], whole["next_offset"]) == (ids, 3, None)
+    assert ([one["item_id"] for one in whole["waiting"]], whole["waiting_count"], whole["next_offset"]) == (
+        ids,
+        3,
+        None,
+    )
     page = queue.stranger.get("/queue", params={"limit": 2}).json()
     assert ([one["item_id"] for one in page["waiting"]], page["waiting_count"], page["next_offset"]) == (ids[:2], 3, 2)
     assert page["duration_s"] == whole["duration_s"]
@@ -187,7 +191,9 @@ def test_a_full_queue_takes_no_more_by_any_way(queue, monkeypatch):
     monkeypatch.setattr("bench.store.tables.queue.MOST_WAITING", 3)
     queue.client.post("/queue/pause").raise_for_status()
     ids = add(queue, STEPS, STEPS)
-    words = "2 experiments wait in the queue, and {} more would be too many; allowed are 3. Let it run on, or remove some"
+    words = (
+        "2 experiments wait in the queue, and {} more would be too many; allowed are 3. Let it run on, or remove some"
+    )
     for path, body, more in (("/queue", {"items": [STEPS, STEPS]}, 2), ("/campaigns", CAMPAIGN, 4)):
         answer = queue.client.post(path, json=body)
         assert (answer.status_code, answer.json()["detail"]) == (409, words.format(more))

@@ -88,7 +88,8 @@ MEANINGS = {
     422: "a value is missing, of the wrong type or outside its range; nothing has moved",
     429: "too many wrong tokens came from this address; `Retry-After` says when the next is looked at",
     502: "the drive does not answer or reports a fault",
-    503: "the store cannot be written or read now (locked, full, or not reached), or what computed has been killed",
+    503: "the store, or the disk, cannot be written or read now (locked, full, or not reached), what computed has been "
+    "killed, or too many exports are under way (`Retry-After`)",
 }
 
 

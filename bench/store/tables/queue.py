@@ -249,7 +249,7 @@ class QueueTable:
             raise StoreStateError(f"item {item_id} is {found.state}; only what waits can be changed, moved or removed")
 
 
-def _count(which: ColumnElement[bool]) -> Select[tuple[int]]:
+def _count(which: ColumnElement[bool]) -> Select[int]:
     return select(func.count()).select_from(QUEUE_ITEM).where(which)
 
 
