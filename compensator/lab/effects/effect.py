@@ -318,6 +318,7 @@ class Effect:
         told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
         searched: shape -> whether a search for the best one goes there; a scan may, to see what fits better beyond.
         holds: shape that it takes in a model -> whether that is this effect still; None: any is.
+        offered_by: package that it comes from, with its version; "" of ours.
         ends_within_scan: so many of the shape's first values end within the scan: what fits best at an upper end goes
             on beyond it, and is something else.
     """
@@ -363,6 +364,7 @@ class Effect:
     grows: bool = False
     goes_round: Round | None = None
     told: Callable[[Facts, Shape], bool] = _nothing_told
+    offered_by: str = ""
 
     def grid(self, motions: Sequence[Motion]) -> list[Shape]:
         """Shapes to scan, given the motions of all trials."""

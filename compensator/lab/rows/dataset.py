@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compensator.lab.effects.effect import Effect, Motion, Shape
+from compensator.lab.effects.offered import try_out
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.recordings.differentiation import later, rates_of_change
 from compensator.lab.recordings.facts import Effort, Facts
@@ -421,6 +422,14 @@ class Dataset:
             if effect.varies_with == "temperature_c" or self._is_told(effect.varies_with):
                 lacks = f"it does not; record {effect.excited_by}"
             raise NotApplicableError(f"{effect.name} needs {effect.varies_with} to differ over the data, and {lacks}")
+        if effect.offered_by and effect.name not in self._tried_out:
+            try_out(effect, [trial.motion for trial in self.trials])
+            self._tried_out.add(effect.name)
+
+    @cached_property
+    def _tried_out(self) -> set[str]:
+        """Effects of other packages whose columns could be made."""
+        return set()
 
     def _is_told(self, condition: str) -> bool:
         return any(condition in trial.signals.recording.conditions for trial in self.trials)
