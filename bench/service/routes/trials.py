@@ -9,6 +9,7 @@ from fastapi import Depends, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field, FiniteFloat
 
+from bench.errors import ParameterError
 from bench.service.auth.access import allow_read
 from bench.service.http import conditional
 from bench.service.http.api_router import api_router
@@ -189,6 +190,8 @@ def samples(
     to_s: Annotated[FiniteFloat | None, Query(description="end of a stretch; without: of the trial [s]")] = None,
 ) -> Response:
     """Every returned row is a recorded row: nothing is averaged. `time_s` always comes along."""
+    if from_s is not None and to_s is not None and from_s > to_s:
+        raise ParameterError(f"from_s is {from_s:g} s, beyond to_s, which is {to_s:g} s; exchange them")
     found = store.trial(trial_id)
     headers = _known(request, found)
     names = [name for name in channels.split(",") if name] or list(found.channels)
