@@ -1,15 +1,13 @@
 """Effects that other packages offer, each taken by itself: one that is broken is left out, and nothing with it."""
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, wraps
 from importlib.metadata import EntryPoint, entry_points
 from typing import ParamSpec, TypeVar
 
-import numpy as np
-
-from compensator.lab.effects.effect import Effect, Motion
+from compensator.lab.effects.effect import Effect
 from compensator.lab.errors import EffectFailedError
 
 P = ParamSpec("P")
@@ -67,24 +65,6 @@ def offered_beside(taken: frozenset[str]) -> Offered:
     return Offered(effects, tuple(left_out))
 
 
-def try_out(effect: Effect, motions: Sequence[Motion]) -> None:
-    """Make all its columns once.
-
-    Raises:
-        EffectFailedError: it cannot, or they cannot be used.
-    """
-    for shape in effect.grid(motions):
-        for motion in motions:
-            columns = np.asarray(effect.columns(motion, shape))
-            wanted = (len(effect.parameters), len(motion.time_s))
-            if columns.shape != wanted:
-                raise EffectFailedError(f"{_whose(effect)} makes columns of shape {columns.shape}; wanted is {wanted}")
-            if not np.isfinite(columns).all():
-                raise EffectFailedError(
-                    f"{_whose(effect)} makes columns that are not all numbers; those of `channels` are measured alone"
-                )
-
-
 def _loaded(point: EntryPoint) -> Effect:
     effect = point.load()
     if not isinstance(effect, Effect):
@@ -108,7 +88,7 @@ def _guarded(effect: Effect) -> Effect:
             except EffectFailedError:
                 raise
             except FAULTS as fault:
-                raise EffectFailedError(f"{_whose(effect)} failed: {_in_words(fault)}") from fault
+                raise EffectFailedError(f"{effect.in_full} failed: {_in_words(fault)}") from fault
 
         return called
 
@@ -123,10 +103,6 @@ def _guarded(effect: Effect) -> Effect:
         misreads=effect.misreads and guarded(effect.misreads),
         breakaway=share and replace(share, columns=guarded(share.columns), shapes=guarded(share.shapes)),
     )
-
-
-def _whose(effect: Effect) -> str:
-    return f"{effect.name}, of package {effect.offered_by},"
 
 
 def _package(point: EntryPoint) -> str:

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compensator.lab.effects.effect import Effect, Motion, Shape
-from compensator.lab.effects.offered import try_out
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.recordings.differentiation import later, rates_of_change
 from compensator.lab.recordings.facts import Effort, Facts
@@ -423,7 +422,7 @@ class Dataset:
                 lacks = f"it does not; record {effect.excited_by}"
             raise NotApplicableError(f"{effect.name} needs {effect.varies_with} to differ over the data, and {lacks}")
         if effect.offered_by and effect.name not in self._tried_out:
-            try_out(effect, [trial.motion for trial in self.trials])
+            effect.try_out([trial.motion for trial in self.trials])
             self._tried_out.add(effect.name)
 
     @cached_property
