@@ -392,7 +392,7 @@ class Effect:
                     )
                 if not np.isfinite(columns).all():
                     raise EffectFailedError(
-                        f"{self.in_full} makes columns that are not all numbers; a channel that it needs has to be in `channels`"
+                        f"{self.in_full} makes columns that are not all numbers; `channels` has to name what it needs"
                     )
 
     def ranges_in(self, quantity: EffortQuantity) -> list[tuple[float, float]]:
