@@ -21,7 +21,7 @@ from bench.service import compute, stops
 from bench.service.auth.access import Access
 from bench.service.auth.audit_trail import AuditTrail, AuditWriter
 from bench.service.auth.token_register import REFRESH_S
-from bench.service.http import conditional, openapi, page, problems, turns
+from bench.service.http import conditional, exports, openapi, page, problems, turns
 from bench.service.http.api_router import PREFIX
 from bench.service.http.faults import Faults
 from bench.service.http.guard import Guard
@@ -188,6 +188,7 @@ def create_app(store: Store, runner: BenchControl, access: Access, lab: Lab | No
     app.state.life = secrets.token_hex(4)  # tells what was told by this process from what was told before
     app.state.live_events = LiveEvents(app.state, store, runner, lease)
     compute.install(app)
+    exports.install(app)
     stops.install(app)
     problems.install(app)
     conditional.install(app)

@@ -3,9 +3,9 @@
 import numpy as np
 
 from bench.store.errors import NotFoundError
-from bench.study.models.effects import Effect, EffectParameter, Example, ExampleTrial
+from bench.study.models.effects import Effect, EffectParameter, Example, ExampleTrial, LeftOutEffect
 from compensator.lab.effects import effect as lab
-from compensator.lab.effects.catalogue import catalogue
+from compensator.lab.effects.catalogue import catalogue, left_out
 from compensator.lab.errors import UnknownEffectError
 from compensator.lab.example import example_of
 
@@ -13,6 +13,11 @@ from compensator.lab.example import example_of
 def effects_catalogue() -> list[Effect]:
     """Every effect with its physics, equation, parameters, what excites it and what it is confused with."""
     return [_effect(effect) for effect in catalogue().values()]
+
+
+def effects_left_out() -> list[LeftOutEffect]:
+    """What installed packages offer and is broken, each with the reason."""
+    return [LeftOutEffect(package=x.package, entry_point=x.entry_point, reason=x.reason) for x in left_out()]
 
 
 def effect_example(name: str) -> Example:

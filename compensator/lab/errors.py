@@ -28,3 +28,7 @@ class UnknownEffectError(LabError, KeyError):
 
 class NotApplicableError(LabError, ValueError):
     """Raised when an effect needs a channel or a condition that the recordings do not have."""
+
+
+class EffectFailedError(NotApplicableError):
+    """Raised when an effect of another package is broken; the message names the package."""

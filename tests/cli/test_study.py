@@ -11,6 +11,7 @@ from bench.cli.lab.diagnosis_tables import next_step
 from bench.study.diagnosis import search as search_module
 from bench.study.models.diagnosis import ProvisionalTerm
 from bench.study.report import report as report_module
+from compensator.lab.effects.offered import LeftOut
 from tests.service.recorded_joint import recording_set_zip
 
 
@@ -90,6 +91,12 @@ def test_effects(command):
     assert "load_friction" in command("effects").stdout
     assert "Rhoban" in command("effects", "load_friction").stdout
     assert command("effects", "magic").exit_code == 3
+
+
+def test_effects_that_are_left_out_are_told(command, monkeypatch):
+    broken = (LeftOut("hose 1.0", "hose = hose:EFFECT", "ImportError: no hose"),)
+    monkeypatch.setattr("bench.study.effects.left_out", lambda: broken)
+    assert "left out: hose = hose:EFFECT, of package hose 1.0: ImportError: no hose" in command("effects").stdout
 
 
 def test_what_is_suggested_is_run_added_and_diagnosed(command, monkeypatch):

@@ -122,6 +122,17 @@ def test_a_foreign_page_cannot_move_the_machine(service, headers):
     assert service.client.post("/stop", headers=headers).status_code == 403
 
 
+@pytest.mark.parametrize("mode", [{}, {"Sec-Fetch-Mode": "no-cors"}, {"Sec-Fetch-Mode": "navigate"}])
+def test_a_foreign_page_cannot_read_either(service, mode):
+    inside = {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Dest": "iframe", **mode}
+    for path in ("/bench", "/live", "/experiments/1/recording-set", "/nothing"):
+        answer = service.client.get(path, headers=inside)
+        assert (answer.status_code, "only a page of this service may" in answer.text) == (403, True)
+    link = {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "navigate", "Sec-Fetch-Dest": "document"}
+    assert service.client.get("/bench", headers=link).status_code == 200
+    assert httpx.get(service.url + "/", headers=link).status_code == 200
+
+
 def test_our_own_page_can(service):
     assert (
         service.client.post("/stop", headers={"Origin": service.url, "Sec-Fetch-Site": "same-origin"}).status_code

@@ -92,3 +92,31 @@ def test_a_name_longer_than_file_systems_allow_names_the_problem_of_the_set(serv
     answer = service.client.post("/recording-sets", params={"name": "😀" * 100}, content=b"no zip", headers=headers)
     assert answer.status_code == 422
     assert "is no zip" in answer.json()["detail"]
+
+
+def test_a_stretch_that_ends_before_it_begins_is_told_so(idle):
+    trial = idle.store.trials(idle.run("steps", repeats=1)["experiment_id"])[0].id
+    for from_s, to_s in (("1e308", "-1e308"), ("2", "1")):
+        answer = idle.stranger.get(f"/trials/{trial}/samples", params={"from_s": from_s, "to_s": to_s})
+        assert (answer.status_code, "beyond to_s" in answer.json()["detail"]) == (422, True)
+    for from_s, to_s in (("1", "1"), ("1e308", "1e308"), ("-5", "-4")):
+        answer = idle.stranger.get(f"/trials/{trial}/samples", params={"from_s": from_s, "to_s": to_s})
+        assert answer.status_code == 200, answer.text
+
+
+def test_where_the_store_is_kept_is_told_to_those_with_a_token_alone(service):
+    place = service.store.where
+    assert place.startswith("/")
+    for path in ("/trials/99999999999999999999", "/experiments/99999999999999999999", "/studies/99999999999999999999"):
+        answer = service.stranger.get(path)
+        assert (answer.status_code, place in answer.text) == (422, False)
+        assert "store of this service: " in answer.json()["detail"]
+
+
+def test_stop_with_a_stroke_at_its_end_stops(idle):
+    idle.start("steps", pace="real-time", repeats=50)
+    assert idle.stranger.post("/stop/").status_code == 401
+    answer = idle.client.post("/stop/", json={"reason": "hand in the joint"})
+    assert (answer.status_code, answer.json()["was_running"]) == (200, True)
+    assert idle.runner.wait(10.0)
+    assert idle.runner.status().reason.endswith("hand in the joint")

@@ -8,7 +8,8 @@ from urllib.parse import urlsplit
 import httpx
 import pytest
 
-from bench.service.http.limits import MOST_BYTES, MOST_DEPTH, MOST_DIGITS, MOST_PARTS, check_json
+from bench.experiments.kinds.waveform import LARGEST_CSV
+from bench.service.http.limits import MOST_BYTES, MOST_DEPTH, MOST_DIGITS, MOST_PARTS, MOST_WITH_TEXT, check_json
 from tests.devices.turns import HOST, ask_for_turns
 from tests.service.attacks import BODIES, STOPPED_WITHIN_S, stopped_under
 from tests.service.running_service import TOKEN
@@ -47,11 +48,12 @@ def test_a_number_of_too_many_digits_is_refused(idle):
 
 @pytest.mark.parametrize("chunked", [False, True])
 def test_a_body_that_is_too_large_is_refused(idle, chunked):
-    body = b" " * (MOST_BYTES + 1)
-    sent = iter([body[:1000], body[1000:]]) if chunked else body
-    answer = idle.client.post("/experiments", content=sent, headers=JSON)
-    assert answer.status_code == 413
-    assert str(MOST_BYTES) in answer.json()["detail"]
+    for path, most in (("/queue", MOST_BYTES), ("/experiments", MOST_WITH_TEXT)):
+        body = b" " * (most + 1)
+        sent = iter([body[:1000], body[1000:]]) if chunked else body
+        answer = idle.client.post(path, content=sent, headers=JSON)
+        assert answer.status_code == 413
+        assert f"allowed are {most} bytes" in answer.json()["detail"]
 
 
 def test_brackets_within_text_do_not_count():
@@ -104,3 +106,24 @@ def test_what_was_sent_is_not_said_back_whole(idle):
 def test_a_stretch_has_finite_ends(idle, name, value):
     answer = idle.client.get("/trials/1/samples", params={name: value})
     assert answer.status_code == 422
+
+
+def test_a_waveform_is_as_long_as_its_description_says(idle):
+    rows = "".join(f"{row * 0.001:.3f},0.0\n" for row in range(25_000))
+    body = {"kind": "waveform", "parameters": {"csv": f"t_s,current_a\n{rows}"}}
+    assert MOST_BYTES < len(body["parameters"]["csv"]) < LARGEST_CSV
+    answer = idle.client.post("/experiments/plan", json=body)
+    assert answer.status_code == 200, answer.text
+    body["parameters"]["csv"] += "0" * LARGEST_CSV
+    answer = idle.client.post("/experiments/plan", json=body)
+    assert (answer.status_code, f"at most {LARGEST_CSV} characters" in answer.json()["detail"]) == (422, True)
+
+
+def test_only_text_may_be_long(idle):
+    numbers = b'{"kind": "steps", "parameters": {"repeats": [' + b"1," * MOST_BYTES + b"1]}}"
+    answer = idle.client.post("/experiments", content=numbers, headers=JSON)
+    assert answer.status_code == 413
+    assert f"bytes beside its texts; allowed are {MOST_BYTES}" in answer.json()["detail"]
+    answer = idle.client.post("/queue", content=b'{"items": "' + b"x" * MOST_BYTES + b'"}', headers=JSON)
+    assert answer.status_code == 413
+    assert f"allowed are {MOST_BYTES} bytes" in answer.json()["detail"]

@@ -169,3 +169,33 @@ def test_tags_and_note_are_changed_afterwards(queue):
     listed = queue.stranger.get("/experiments", params={"tag": "new grease"}).json()["items"]
     assert [one["experiment_id"] for one in listed] == [found["experiment_id"]]
     assert queue.client.patch(path, json={"tags": []}).json()["tags"] == []
+
+
+def test_a_queue_comes_in_pages_and_is_told_as_a_whole(queue):
+    queue.client.post("/queue/pause").raise_for_status()
+    ids = add(queue, STEPS, STEPS, STEPS)
+    whole = state(queue)
+    assert ([one["item_id"] for one in whole["waiting"]], whole["waiting_count"], whole["next_offset"]) == (
+        ids,
+        3,
+        None,
+    )
+    page = queue.stranger.get("/queue", params={"limit": 2}).json()
+    assert ([one["item_id"] for one in page["waiting"]], page["waiting_count"], page["next_offset"]) == (ids[:2], 3, 2)
+    assert page["duration_s"] == whole["duration_s"]
+    last = queue.stranger.get("/queue", params={"limit": 2, "offset": 2}).json()
+    assert ([one["item_id"] for one in last["waiting"]], last["next_offset"]) == (ids[2:], None)
+
+
+def test_a_full_queue_takes_no_more_by_any_way(queue, monkeypatch):
+    monkeypatch.setattr("bench.store.tables.queue.MOST_WAITING", 3)
+    queue.client.post("/queue/pause").raise_for_status()
+    ids = add(queue, STEPS, STEPS)
+    words = (
+        "2 experiments wait in the queue, and {} more would be too many; allowed are 3. Let it run on, or remove some"
+    )
+    for path, body, more in (("/queue", {"items": [STEPS, STEPS]}, 2), ("/campaigns", CAMPAIGN, 4)):
+        answer = queue.client.post(path, json=body)
+        assert (answer.status_code, answer.json()["detail"]) == (409, words.format(more))
+    assert [one["item_id"] for one in state(queue)["waiting"]] == ids
+    add(queue, STEPS)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from compensator.lab.effects.offered import LeftOut
 from tests.service.recorded_joint import recording_set_zip
 
 
@@ -159,3 +160,12 @@ def test_units_of_one_kind_stand_beside_each_other(service, study, experiment_id
     assert two["differences"]
     assert service.stranger.get(path).status_code == 422
     assert service.stranger.get(path, params={"beside": [beside[0], 999]}).status_code == 404
+
+
+def test_effects_of_other_packages_that_are_broken_are_told(service, monkeypatch):
+    assert service.stranger.get("/effects").json()["left_out"] == []
+    broken = (LeftOut("hose 1.0", "hose = hose:EFFECT", "ImportError: no hose"),)
+    monkeypatch.setattr("bench.study.effects.left_out", lambda: broken)
+    answer = service.stranger.get("/effects", params={"limit": 1}).json()
+    told = {"package": "hose 1.0", "entry_point": "hose = hose:EFFECT", "reason": "ImportError: no hose"}
+    assert (len(answer["items"]), answer["left_out"]) == (1, [told])

@@ -142,6 +142,17 @@ def test_wrong_tokens_are_slowed_down_and_right_ones_never(forgiven):
         assert client.post("/stop").status_code == 200
 
 
+@pytest.mark.parametrize("path", ["/nothing", "/experiments", "/stop"])
+def test_a_wrong_token_counts_once_wherever_it_is_sent(forgiven, path):
+    wrong = {"Authorization": "Bearer wrong-token-0123456789"}
+    refused = 404 if path == "/nothing" else 401
+    answers = [httpx.post(f"{forgiven.url}/api/v1{path}", headers=wrong) for _ in range(BURST + 2)]
+    assert [answer.status_code for answer in answers] == [refused] * BURST + [429] * 2
+    assert 1 <= int(answers[-1].headers["retry-after"]) <= REFILL_S
+    assert answers[-1].headers["content-type"] == "application/problem+json"
+    assert forgiven.client.post("/stop").status_code == 200
+
+
 def test_a_waiting_address_is_let_in_again_one_by_one():
     time_s = 100.0
     attempts = Attempts(lambda: time_s)

@@ -16,7 +16,7 @@ def effects(
     as_json: Json = False,
 ) -> None:
     """List the physical effects that a model can be made of."""
-    from bench.study.effects import effects_catalogue
+    from bench.study.effects import effects_catalogue, effects_left_out
 
     catalogue = effects_catalogue()
     if name is not None:
@@ -28,6 +28,8 @@ def effects(
     elif name is None:
         rows = [(one.name, one.title, one.driver, ", ".join(one.confused_with)) for one in catalogue]
         table("Effects", ["name", "title", "driven by", "confused with"], rows)
+        for one in effects_left_out():
+            say(f"left out: {one.entry_point}, of package {one.package}: {one.reason}")
     else:
         _describe(catalogue[0])
 

@@ -104,6 +104,8 @@ def show(found: dict[str, Any]) -> None:
     say(f"{found['state']}{why}; {_minutes(found['left_s'])} left, {found['load_changes']} load changes")
     items = [*([found["running"]] if found["running"] else []), *found["waiting"]]
     table("Queue", ["item#", "state", "kind", "parameters", "takes#", "tags"], map(_row, items))
+    if found["next_offset"] is not None:
+        say(f"these are the first {len(found['waiting'])} of {found['waiting_count']} that wait")
     if found["ended"]:
         rows = [(*_row(item)[:3], item["experiment_id"], item["reason"]) for item in found["ended"]]
         table("Ended", ["item#", "state", "kind", "experiment#", "reason"], rows)

@@ -84,11 +84,16 @@ class Conductor:
 
         Raises:
             UnknownKindError, ParameterError, LimitError, ConfigurationError: one is refused.
+            StoreStateError: too many would wait.
         """
         return self.add_items([checked_item(order, self._runner.configuration) for order in orders], by=by)
 
     def add_items(self, items: list[NewItem], campaign: dict[str, object] | None = None, by: str = "") -> list[int]:
-        """Take items in, all or none; a campaign by the columns of its table. Returns their ids."""
+        """Take items in, all or none; a campaign by the columns of its table. Returns their ids.
+
+        Raises:
+            StoreStateError: too many would wait.
+        """
         found = self.table.add(items, campaign)
         self._acting_for = by or self._acting_for
         self._wake.set()

@@ -9,6 +9,7 @@ from bench.runs.queue.conductor import Conductor
 from bench.runs.queue.items import HANG_S, load_changes
 from bench.store.tables.queue import WAITING, QueueItem
 
+MOST_SHOWN = 1000  # of the items that wait, in one answer
 State = Literal["idle", "running", "pausing", "paused", "held"]
 
 
@@ -21,7 +22,9 @@ class QueueState:
             so, within an experiment; "held": nothing is started until somebody resumes.
         reason: why it is held or paused.
         running: the item whose experiment runs.
-        waiting: in order.
+        waiting: a page of what waits, in order.
+        waiting_count: how many wait in all.
+        next_offset: of the next page; None on the last.
         duration_s: estimate of all of them, in the joint's time, hanging of loads included.
         left_s: what is left of that.
         load_changes: how often something has to be hung yet.
@@ -32,14 +35,18 @@ class QueueState:
     reason: str
     running: QueueItem | None
     waiting: list[QueueItem]
+    waiting_count: int
+    next_offset: int | None
     duration_s: float
     left_s: float
     load_changes: int
     ended: list[QueueItem]
 
 
-def queue_state(conductor: Conductor, runner: BenchControl, ended: int = 0) -> QueueState:
-    """The queue of a bench, now; with so many of the items that came out of it."""
+def queue_state(
+    conductor: Conductor, runner: BenchControl, ended: int = 0, limit: int = MOST_SHOWN, offset: int = 0
+) -> QueueState:
+    """The queue of a bench, now; with a page of what waits, and so many of the items that came out of it."""
     waiting = conductor.table.items(WAITING)
     running, status = conductor.running, runner.status()
     waiting = [item for item in waiting if running is None or item.id != running.id]
@@ -56,4 +63,6 @@ def queue_state(conductor: Conductor, runner: BenchControl, ended: int = 0) -> Q
     duration_s = coming_s + (running.duration_s if running else 0.0)
     left_s = coming_s + (status.left_s if running else 0.0)
     out = conductor.table.ended(ended) if ended else []
-    return QueueState(state, held or "", running, waiting, duration_s, left_s, changes, out)
+    shown, count = waiting[offset : offset + limit], len(waiting)
+    more = offset + limit if offset + limit < count else None
+    return QueueState(state, held or "", running, shown, count, more, duration_s, left_s, changes, out)

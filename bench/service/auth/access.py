@@ -66,14 +66,6 @@ class Access:
         await self._look_at_once()
         return self.tokens.caller(presented)
 
-    async def knows(self, presented: str, address: str) -> bool:
-        """Whether it is a token of this service, asked before a body is read; a wrong one is counted by its route."""
-        if not presented or (self.tokens.caller(presented) is None and self.attempts.wait_s(address)):
-            return False
-        if self.tokens.caller(presented) is None:
-            await self._look_at_once()
-        return self.tokens.caller(presented) is not None
-
     async def _look_at_once(self) -> None:
         with anyio.move_on_after(LOOK_AGAIN_S):
             await anyio.to_thread.run_sync(self.look_again, abandon_on_cancel=True, limiter=self._looking)
@@ -117,7 +109,9 @@ async def _identified(request: Request, credentials: HTTPAuthorizationCredential
     access: Access = request.app.state.access
     if credentials is None:
         raise _unauthorised(what, "no token was sent")
-    found = await access.caller(credentials.credentials, request.client.host if request.client else "")
+    found = None
+    if not getattr(request.state, "wrong_token", False):  # else it was looked at, and counted, before the body was read
+        found = await access.caller(credentials.credentials, request.client.host if request.client else "")
     if found is None:
         raise _unauthorised(what, "the token is none of this service, was revoked or has expired")
     request.state.caller = found

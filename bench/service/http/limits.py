@@ -6,19 +6,25 @@ A body of JSON is small here; recordings are streamed into a file by their own r
 import asyncio
 from dataclasses import dataclass
 
+import anyio
+import anyio.to_thread
 import numpy as np
 from starlette.datastructures import Headers
+from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from bench.service.auth.access import Access
+from bench.service.http.api_router import PREFIX
 from bench.service.http.guard import SAFE_METHODS
 from bench.service.http.problems import problem_response
 
 MOST_BYTES = 2**18  # of a body of JSON: ten times what the largest campaign has
+MOST_WITH_TEXT = 2**22  # of one with a waveform: its text may be long, all beside it is as small as elsewhere
 MOST_DEPTH = 32  # lists and objects within each other
 MOST_PARTS = 2**13  # lists and objects in all: each is an object that the interpreter's collector walks over
 MOST_DIGITS = 400  # of a number: beyond a float's range and Python's own limit for integers
 LONGEST_S = 10.0  # until the body is here
+WITH_TEXT = ("/experiments", "/experiments/plan")
 UNREAD = (
     "/stop",
     "/recording-sets",
@@ -51,6 +57,7 @@ class Limits:
         self._app = app
         self._access = access
         self._longest_s = longest_s
+        self._long = anyio.CapacityLimiter(1)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse, or pass on with the body at hand."""
@@ -58,34 +65,49 @@ class Limits:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        if not await self._known(scope, headers):
+        try:
+            known = await self._known(scope, headers)
+        except HTTPException as refusal:
+            refused = problem_response(refusal.status_code, refusal.detail, headers=dict(refusal.headers or {}))
+            await refused(scope, receive, _closing(send))
+            return
+        if not known:
             await self._app(scope, _given(b"", receive), _closing(send))
             return
         if scope["path"].rstrip("/").endswith(UNREAD):
             await self._app(scope, receive, send)
             return
         try:
-            body = await self._body(headers, receive)
+            most = MOST_WITH_TEXT if scope["path"].removeprefix(PREFIX) in WITH_TEXT else MOST_BYTES
+            body = await self._body(headers, receive, most)
         except _Refusal as refusal:
             await problem_response(refusal.status, refusal.detail)(scope, receive, _closing(send))
             return
         await self._app(scope, _given(body, receive), send)
 
     async def _known(self, scope: Scope, headers: Headers) -> bool:
+        """Whether it brings a token of this service. A wrong one is counted, whether there is such a route or not."""
         kind, _, token = headers.get("authorization", "").partition(" ")
+        if kind.lower() != "bearer" or not token.strip():
+            return False
         client = scope.get("client")
-        return kind.lower() == "bearer" and await self._access.knows(token.strip(), client[0] if client else "")
+        found = await self._access.caller(token.strip(), client[0] if client else "")
+        scope.setdefault("state", {})["wrong_token"] = found is None
+        return found is not None
 
-    async def _body(self, headers: Headers, receive: Receive) -> bytes:
+    async def _body(self, headers: Headers, receive: Receive, most: int) -> bytes:
         told = headers.get("content-length", "")
-        if told.isdecimal() and int(told[:20]) > MOST_BYTES:
-            raise _too_large(f"{told[:20]} bytes")
+        if told.isdecimal() and int(told[:20]) > most:
+            raise _too_large(f"{told[:20]} bytes", most)
         try:
             async with asyncio.timeout(self._longest_s):
-                body = await _received(receive)
+                body = await _received(receive, most)
         except TimeoutError:
             raise _Refusal(408, f"the body was not here after {self._longest_s:g} s; send it at once") from None
-        check_json(body)
+        if len(body) <= MOST_BYTES:
+            check_json(body)
+        else:
+            await anyio.to_thread.run_sync(check_json, body, limiter=self._long)
         return body
 
 
@@ -99,6 +121,10 @@ def check_json(body: bytes) -> None:
         return
     escaped = body.replace(b"\\\\", b"").replace(b'\\"', b"")  # the quotes that are left begin and end a text
     within = np.bitwise_xor.accumulate(_bytes_of(escaped, _QUOTE))
+    if len(within) > MOST_BYTES and (beside := len(within) - np.count_nonzero(within)) > MOST_BYTES:
+        raise _Refusal(
+            413, f"the body has {beside} bytes beside its texts; allowed are {MOST_BYTES}. Send it in pieces"
+        )
     if _TOO_LONG in (_bytes_of(escaped, _DIGIT) > within).tobytes():
         raise _Refusal(422, f"the body has a number of more than {MOST_DIGITS} digits; allowed are {MOST_DIGITS}")
     opens = _bytes_of(escaped, _OPENS) > within
@@ -114,7 +140,7 @@ def _bytes_of(body: bytes, kind: bytes) -> np.ndarray:
     return np.frombuffer(body.translate(kind), np.uint8)
 
 
-async def _received(receive: Receive) -> bytes:
+async def _received(receive: Receive, most: int) -> bytes:
     parts: list[bytes] = []
     size, more = 0, True
     while more:
@@ -123,15 +149,18 @@ async def _received(receive: Receive) -> bytes:
             return b""
         parts.append(message.get("body", b""))
         size += len(parts[-1])
-        if size > MOST_BYTES:
-            raise _too_large("more")
+        if size > most:
+            raise _too_large("more", most)
         more = message.get("more_body", False)
     return b"".join(parts)
 
 
-def _too_large(found: str) -> _Refusal:
-    detail = f"the body has {found}; allowed are {MOST_BYTES} bytes. Recordings go to POST /recording-sets as a zip"
-    return _Refusal(413, detail)
+def _too_large(found: str, most: int) -> _Refusal:
+    return _Refusal(
+        413,
+        f"the body has {found}; allowed are {most} bytes. Recordings go to POST /recording-sets as a zip, a long "
+        "waveform to POST /experiments",
+    )
 
 
 def _given(body: bytes, receive: Receive) -> Receive:

@@ -88,7 +88,8 @@ MEANINGS = {
     422: "a value is missing, of the wrong type or outside its range; nothing has moved",
     429: "too many wrong tokens came from this address; `Retry-After` says when the next is looked at",
     502: "the drive does not answer or reports a fault",
-    503: "the store cannot be written or read now (locked, full, or not reached), or what computed has been killed",
+    503: "the store, or the disk, cannot be written or read now (locked, full, or not reached), what computed has been "
+    "killed, or too many exports are under way (`Retry-After`)",
 }
 
 
@@ -172,8 +173,11 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(BenchError)
     @app.exception_handler(DriveError)
     @app.exception_handler(CompensatorError)
-    async def ours(_request: Request, error: Exception) -> JSONResponse:
-        return problem_response(status_of(error), str(error), kind=type(error).__name__)
+    async def ours(request: Request, error: Exception) -> JSONResponse:
+        detail = str(error)
+        if getattr(request.state, "caller", None) is None:  # where things are is for those who have a token
+            detail = detail.replace(f"'{request.app.state.store.where}'", "of this service")
+        return problem_response(status_of(error), detail, kind=type(error).__name__)
 
     @app.exception_handler(LeaseHeldError)
     async def held(_request: Request, error: LeaseHeldError) -> JSONResponse:

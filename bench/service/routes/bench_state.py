@@ -146,6 +146,7 @@ def channels() -> RecordedChannels:
 
 
 # async on purpose: it runs on the event loop itself and never waits for a free worker thread
+@router.post("/stop/", include_in_schema=False, dependencies=[Depends(require_viewer)])  # else sent on, and not stopped
 @router.post(
     "/stop",
     summary="Stop the joint and power it off",

@@ -8,7 +8,6 @@ from typing import Annotated
 from fastapi import Depends, Path, Query, Request, Response
 from fastapi.responses import FileResponse, StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field
-from starlette.background import BackgroundTask
 
 from bench.experiments.registry import KINDS, find_kind
 from bench.json_types import Json
@@ -21,6 +20,7 @@ from bench.service.compute import at_bench
 from bench.service.http import conditional
 from bench.service.http.api_router import api_router
 from bench.service.http.downloads import PARQUET, PARQUET_ANSWER, attachment
+from bench.service.http.exports import Export, export
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.http.repeated_start import Key, once
@@ -175,6 +175,17 @@ def annotate(store: StoreOf, request: Request, experiment_id: ExperimentId, body
     return Experiment.model_validate(store.experiment(experiment_id))
 
 
+def _known(store: StoreOf, request: Request, experiment_id: ExperimentId) -> dict[str, str]:
+    """Headers of what is made from a whole experiment: it does not change any more once that has ended."""
+    found = store.experiment(experiment_id)
+    if found.finished_utc is None:
+        return {}
+    return conditional.unless_known(request, found, store.trials(experiment_id))
+
+
+Known = Annotated[dict[str, str], Depends(_known)]
+
+
 @router.get(
     "/experiments/{experiment_id}/recording-set",
     summary="All its trials as a recording set (zip)",
@@ -185,50 +196,40 @@ def annotate(store: StoreOf, request: Request, experiment_id: ExperimentId, body
             "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
             "headers": attachment("experiment-1.zip"),
         },
-        **problems(404, 409),
+        **problems(404, 409, 503),
         **conditional.ANSWER,
     },
 )
-def recording_set(store: StoreOf, request: Request, experiment_id: ExperimentId) -> FileResponse:
+async def recording_set(store: StoreOf, request: Request, experiment_id: ExperimentId, known: Known) -> Response:
     """Written to a temporary file first, so that an error is an answer and not half a file. With an `ETag`."""
-    from bench.recording_set import export_experiment  # imported when needed: the service starts without it
 
-    headers = _known(store, request, experiment_id)
-    folder = tempfile.TemporaryDirectory(prefix="friction-bench-")
-    path = FilePath(folder.name) / f"experiment-{experiment_id}.zip"
-    try:
-        export_experiment(store, experiment_id, path)
-    except BaseException:
-        folder.cleanup()
-        raise
-    return FileResponse(
-        path,
-        media_type="application/zip",
-        filename=path.name,
-        background=BackgroundTask(folder.cleanup),
-        headers=headers,
-    )
+    def write() -> Export:
+        from bench.recording_set import export_experiment  # imported when needed: the service starts without it
+
+        folder = tempfile.TemporaryDirectory(prefix="friction-bench-")
+        path = FilePath(folder.name) / f"experiment-{experiment_id}.zip"
+        try:
+            export_experiment(store, experiment_id, path)
+        except BaseException:
+            folder.cleanup()
+            raise
+        return Export(path, "application/zip", known, path.name, folder.cleanup)
+
+    return await export(request, write)
 
 
 @router.get(
     "/experiments/{experiment_id}/parquet",
     summary="All its trials as one Parquet table",
     response_class=StreamingResponse,
-    responses={200: PARQUET_ANSWER, **problems(404, 422), **conditional.ANSWER},
+    responses={200: PARQUET_ANSWER, **problems(404, 422, 503), **conditional.ANSWER},
 )
-def parquet(store: StoreOf, request: Request, experiment_id: ExperimentId) -> StreamingResponse:
+async def parquet(store: StoreOf, request: Request, experiment_id: ExperimentId, known: Known) -> Response:
     """Columns trial_id, trial, one per channel and condition. 422 where it has no rows, or pyarrow is not installed."""
-    from bench.recording_set import export_parquet
 
-    headers = _known(store, request, experiment_id)
-    chunks = export_parquet(store, experiment_id)
-    headers["Content-Disposition"] = f'attachment; filename="experiment-{experiment_id}.parquet"'
-    return StreamingResponse(chunks, media_type=PARQUET, headers=headers)
+    def write() -> Export:
+        from bench.recording_set import export_parquet
 
+        return Export(export_parquet(store, experiment_id), PARQUET, known, f"experiment-{experiment_id}.parquet")
 
-def _known(store: StoreOf, request: Request, experiment_id: int) -> dict[str, str]:
-    """Headers of what is made from a whole experiment: it does not change any more once that has ended."""
-    found = store.experiment(experiment_id)
-    if found.finished_utc is None:
-        return {}
-    return conditional.unless_known(request, found, store.trials(experiment_id))
+    return await export(request, write)

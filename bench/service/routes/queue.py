@@ -6,10 +6,11 @@ from typing import Annotated
 from fastapi import Depends, Path, Query, Request
 
 from bench.runs.queue.campaign import Campaign, plan_campaign
-from bench.runs.queue.overview import queue_state
+from bench.runs.queue.overview import MOST_SHOWN, queue_state
 from bench.service.auth.access import Operator, allow_read, require_operator
 from bench.service.auth.audit_trail import note
 from bench.service.http.api_router import api_router
+from bench.service.http.pages import Limit, Offset
 from bench.service.http.problems import problems
 from bench.service.http.repeated_start import Key, once
 from bench.service.routes.leases import require_lease
@@ -39,9 +40,11 @@ def queue(
     conductor: ConductorOf,
     runner: RunnerOf,
     ended: Annotated[int, Query(ge=0, le=1000, description="how many that came out of the queue")] = 10,
+    limit: Limit = MOST_SHOWN,
+    offset: Offset = 0,
 ) -> Queue:
-    """Reading this never moves anything."""
-    return Queue.model_validate(queue_state(conductor, runner, ended))
+    """Reading this never moves anything. What waits comes in pages of `limit`; all else is of the whole queue."""
+    return Queue.model_validate(queue_state(conductor, runner, ended, limit, offset))
 
 
 @taken_in("/queue", summary="Add experiments: they start when it is their turn, at once where nothing is before them")

@@ -109,7 +109,9 @@ class Queue(BaseModel):
     )
     reason: str = Field(description="why it is held or paused")
     running: Item | None
-    waiting: list[Item] = Field(description="in the order in which they will be run")
+    waiting: list[Item] = Field(description="a page of those that wait, in the order in which they will be run")
+    waiting_count: int = Field(description="how many wait in all")
+    next_offset: int | None = Field(default=None, description="offset of the next page; null on the last")
     duration_s: float = Field(description="estimate of all of them, in the joint's time; a simulated one may be faster")
     left_s: float = Field(description="what is left of it")
     load_changes: int = Field(description="how often something has to be hung yet")

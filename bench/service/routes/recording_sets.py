@@ -1,7 +1,10 @@
 """/recording-sets: trials of other benches come in. (They leave under /experiments/{id}/recording-set.)"""
 
+import asyncio
+import errno
 import tempfile
 from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -17,6 +20,9 @@ from bench.service.uploads import GuessedColumns, Imported, guess_upload, import
 
 MOST_BYTES = 2 * 1024**3
 LONGEST_FILE_NAME = 200  # bytes
+GRACE_S = 60.0  # that an upload may take, whatever its size ...
+LEAST_B_S = 1e6 / 60.0  # ... and what it has to bring beyond [bytes/s]
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 router = api_router("/recording-sets", tags=["recording sets"], dependencies=[Depends(require_token)])
 ZIP_BODY = {
     "requestBody": {
@@ -40,7 +46,7 @@ FILES_BODY = {
     "",
     status_code=201,
     summary="Import a recording set (zip)",
-    responses=problems(401, 413, 415, 422),
+    responses=problems(401, 408, 413, 415, 422, 503),
     openapi_extra=ZIP_BODY,
 )
 async def import_set(
@@ -53,10 +59,7 @@ async def import_set(
 
     Files of other shapes need a `mapping.toml` in the zip: ask POST /recording-sets/guess for one.
     """
-    _check_is_zip(request)
-    with tempfile.TemporaryDirectory(prefix="friction-bench-") as folder:
-        path = Path(folder) / f"{_shortened(name)}.zip"  # errors name the set as its sender does
-        await _receive(request.stream(), path)
+    async with _upload(request, name) as path:
         made = await in_lab(request, import_upload, path, name)
     note(request, f"imported experiment {made.experiment_id} ({name})")
     return made
@@ -65,7 +68,7 @@ async def import_set(
 @router.post(
     "/guess",
     summary="What the columns of unknown files may be (zip)",
-    responses=problems(401, 413, 415, 422),
+    responses=problems(401, 408, 413, 415, 422, 503),
     openapi_extra=FILES_BODY,
 )
 async def guess_set(
@@ -79,11 +82,29 @@ async def guess_set(
     supply_v: Annotated[float | None, Query(description="supply voltage [V], where no column holds it")] = None,
 ) -> GuessedColumns:
     """Keeps nothing. Where no question is left, put `mapping` and `rig` into the zip as mapping.toml and rig.toml."""
-    _check_is_zip(request)
-    with tempfile.TemporaryDirectory(prefix="friction-bench-") as folder:
-        path = Path(folder) / f"{_shortened(name)}.zip"
-        await _receive(request.stream(), path)
+    async with _upload(request, name) as path:
         return await in_lab(request, guess_upload, path, take or [], counts_per_turn, rate_hz, supply_v)
+
+
+@asynccontextmanager
+async def _upload(request: Request, name: str) -> AsyncIterator[Path]:
+    """The body as a file, which is removed afterwards; errors name it as its sender does.
+
+    Raises:
+        HTTPException: 408, 413, 415; 503, there is no room for it.
+    """
+    _check_is_zip(request)
+    try:
+        with tempfile.TemporaryDirectory(prefix="friction-bench-") as folder:
+            path = Path(folder) / f"{_shortened(name)}.zip"
+            await _receive(request.stream(), path)
+            yield path
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            raise
+        raise HTTPException(
+            503, f"there is no room for the upload in {tempfile.gettempdir()} of the service; make some, or set TMPDIR"
+        ) from error
 
 
 def _check_is_zip(request: Request) -> None:
@@ -98,12 +119,21 @@ def _shortened(name: str) -> str:
 
 
 async def _receive(chunks: AsyncIterator[bytes], path: Path) -> None:
-    received = 0
-    async with await anyio.open_file(path, "wb") as file:
-        async for chunk in chunks:
-            received += len(chunk)
-            if received > MOST_BYTES:
-                raise HTTPException(
-                    413, f"the upload is larger than {MOST_BYTES} bytes; split the set, or import its path"
-                )
-            await file.write(chunk)
+    received, begun_s = 0, asyncio.get_running_loop().time()
+    try:
+        async with asyncio.timeout(GRACE_S) as limit, await anyio.open_file(path, "wb") as file:
+            async for chunk in chunks:
+                received += len(chunk)
+                if received > MOST_BYTES:
+                    raise HTTPException(
+                        413, f"the upload is larger than {MOST_BYTES} bytes; split the set, or import its path"
+                    )
+                await file.write(chunk)
+                limit.reschedule(begun_s + GRACE_S + received / LEAST_B_S)
+    except TimeoutError:
+        raise HTTPException(
+            408,
+            f"the upload has brought {received} bytes and goes on too slowly; wanted are {60.0 * LEAST_B_S / 1e6:g} MB "
+            f"a minute after the first {GRACE_S:g} s. Send it over a faster line, in pieces, or import its path",
+            {"Connection": "close"},
+        ) from None

@@ -9,10 +9,12 @@ from fastapi import Depends, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, Field, FiniteFloat
 
+from bench.errors import ParameterError
 from bench.service.auth.access import allow_read
 from bench.service.http import conditional
 from bench.service.http.api_router import api_router
 from bench.service.http.downloads import PARQUET, PARQUET_ANSWER, attachment, samples_json
+from bench.service.http.exports import Export, export
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
 from bench.service.records import Trial
@@ -153,6 +155,20 @@ def trial(store: StoreOf, request: Request, response: Response, trial_id: TrialI
     return found
 
 
+def _known(request: Request, found: StoredTrial) -> dict[str, str]:
+    """Headers of what is made from a trial's samples: they do not change any more once it has ended."""
+    return {} if found.finished_utc is None else conditional.unless_known(request, found)
+
+
+def _asked(store: StoreOf, request: Request, trial_id: TrialId) -> tuple[StoredTrial, dict[str, str]]:
+    """A trial whose samples are asked for, and the headers of what is made from them."""
+    found = store.trial(trial_id)
+    return found, _known(request, found)
+
+
+Asked = Annotated[tuple[StoredTrial, dict[str, str]], Depends(_asked)]
+
+
 @router.get(
     "/{trial_id}/samples",
     summary="Samples, down-sampled on request",
@@ -174,6 +190,8 @@ def samples(
     to_s: Annotated[FiniteFloat | None, Query(description="end of a stretch; without: of the trial [s]")] = None,
 ) -> Response:
     """Every returned row is a recorded row: nothing is averaged. `time_s` always comes along."""
+    if from_s is not None and to_s is not None and from_s > to_s:
+        raise ParameterError(f"from_s is {from_s:g} s, beyond to_s, which is {to_s:g} s; exchange them")
     found = store.trial(trial_id)
     headers = _known(request, found)
     names = [name for name in channels.split(",") if name] or list(found.channels)
@@ -200,44 +218,42 @@ def _or(value: float | None, otherwise: float) -> float:
             "content": {"text/csv": {"example": "time_s,position_rad,current_a\n0.0,0.0,0.012\n"}},
             "headers": attachment("trial-1.csv"),
         },
-        **problems(404),
+        **problems(404, 503),
         **conditional.ANSWER,
     },
 )
-def csv(
+async def csv(
     store: StoreOf,
     request: Request,
-    trial_id: TrialId,
+    asked: Asked,
     every_channel: Annotated[bool, Query(description="channels too that no recording set holds")] = False,
-) -> StreamingResponse:
+) -> Response:
     """The same file that a recording set holds for the trial: numbers are exact."""
-    from bench.recording_set import csv_chunks, stream_of_trial  # imported when needed: the service starts without it
+    found, known = asked
 
-    found = store.trial(trial_id)
-    headers = _known(request, found) | {"Content-Disposition": f'attachment; filename="trial-{found.id}.csv"'}
-    return StreamingResponse(
-        csv_chunks(stream_of_trial(store, found, every_channel)),
-        media_type="text/csv; charset=utf-8",
-        headers=headers,
-    )
+    def write() -> Export:
+        from bench.recording_set import csv_chunks, stream_of_trial  # when needed: the service starts without it
+
+        chunks = csv_chunks(stream_of_trial(store, found, every_channel))
+        return Export(chunks, "text/csv; charset=utf-8", known, f"trial-{found.id}.csv")
+
+    return await export(request, write)
 
 
 @router.get(
     "/{trial_id}/parquet",
     summary="The whole trial as Parquet",
     response_class=StreamingResponse,
-    responses={200: PARQUET_ANSWER, **problems(404, 422), **conditional.ANSWER},
+    responses={200: PARQUET_ANSWER, **problems(404, 422, 503), **conditional.ANSWER},
 )
-def parquet(store: StoreOf, request: Request, trial_id: TrialId) -> StreamingResponse:
+async def parquet(store: StoreOf, request: Request, asked: Asked) -> Response:
     """One column per channel and condition; null where not measured. 422 where pyarrow is not installed."""
-    from bench.recording_set import parquet_chunks, stream_of_trial
+    found, known = asked
 
-    found = store.trial(trial_id)
-    headers = _known(request, found) | {"Content-Disposition": f'attachment; filename="trial-{found.id}.parquet"'}
-    chunks = parquet_chunks([stream_of_trial(store, found)])
-    return StreamingResponse(chunks, media_type=PARQUET, headers=headers)
+    def write() -> Export:
+        from bench.recording_set import parquet_chunks, stream_of_trial
 
+        chunks = parquet_chunks([stream_of_trial(store, found)])
+        return Export(chunks, PARQUET, known, f"trial-{found.id}.parquet")
 
-def _known(request: Request, found: StoredTrial) -> dict[str, str]:
-    """Headers of what is made from a trial's samples: they do not change any more once it has ended."""
-    return {} if found.finished_utc is None else conditional.unless_known(request, found)
+    return await export(request, write)

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, field
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Connection, Row, delete, func, insert, select, update
+from sqlalchemy import ColumnElement, Connection, Row, Select, delete, func, insert, select, update
 
 from bench.json_types import Json
 from bench.store.database import Database
@@ -16,6 +16,7 @@ from bench.store.tables.experiments import insert_row, now
 WAITING, RUNNING = "waiting", "running"
 LOST = "the process that ran the queue ended before its experiment was on record"
 GONE = "its experiment is not in the store any more"
+MOST_WAITING = 10_000  # items of a bench: what is asked of the queue takes longer with each
 ITEM = QUEUE_ITEM.c
 
 
@@ -79,8 +80,18 @@ class QueueTable:
         self._bench = bench
 
     def add(self, items: Sequence[NewItem], campaign: Mapping[str, object] | None = None) -> list[int]:
-        """Add items at the end, all or none; a campaign by the columns of its table. Returns their ids."""
+        """Add items at the end, all or none; a campaign by the columns of its table. Returns their ids.
+
+        Raises:
+            StoreStateError: too many would wait.
+        """
         with self._database.writing() as connection:
+            waiting = connection.execute(_count(self._mine(WAITING))).scalar_one()
+            if waiting + len(items) > MOST_WAITING:
+                raise StoreStateError(
+                    f"{waiting} experiments wait in the queue, and {len(items)} more would be too many; allowed are "
+                    f"{MOST_WAITING}. Let it run on, or remove some"
+                )
             last = connection.execute(select(func.max(ITEM.place)).where(ITEM.bench == self._bench)).scalar()
             campaign_id = None
             if campaign is not None:
@@ -101,6 +112,11 @@ class QueueTable:
             query = query.where(ITEM.campaign_id == campaign_id)
         with self._database.reading() as connection:
             return [_item(row) for row in connection.execute(query)]
+
+    def count_noted(self, note: str, *states: str) -> int:
+        """How many items of some states have a note, word for word."""
+        with self._database.reading() as connection:
+            return connection.execute(_count(self._mine(*states) & (ITEM.note == note))).scalar_one()
 
     def ended(self, limit: int) -> list[QueueItem]:
         """What came out of the queue, newest first."""
@@ -159,8 +175,7 @@ class QueueTable:
     def clear(self) -> int:
         """Take all out that wait; how many."""
         with self._database.writing() as connection:
-            waiting = (ITEM.bench == self._bench) & (ITEM.state == WAITING)
-            return connection.execute(delete(QUEUE_ITEM).where(waiting)).rowcount
+            return connection.execute(delete(QUEUE_ITEM).where(self._mine(WAITING))).rowcount
 
     # what the conductor says
 
@@ -214,6 +229,9 @@ class QueueTable:
             return "interrupted", GONE
         return (row.outcome, row.reason) if row.outcome != RUNNING else ("interrupted", LOST)
 
+    def _mine(self, *states: str) -> ColumnElement[bool]:
+        return (ITEM.bench == self._bench) & ITEM.state.in_(states)
+
     def _set(self, item_id: int, **values: Any) -> None:
         with self._database.writing() as connection:
             connection.execute(update(QUEUE_ITEM).where(ITEM.id == item_id).values(**values))
@@ -229,6 +247,10 @@ class QueueTable:
         found = self._get(connection, item_id)
         if found.state != WAITING:
             raise StoreStateError(f"item {item_id} is {found.state}; only what waits can be changed, moved or removed")
+
+
+def _count(which: ColumnElement[bool]) -> Select[int]:
+    return select(func.count()).select_from(QUEUE_ITEM).where(which)
 
 
 def _item(row: Row[Any]) -> QueueItem:

@@ -30,6 +30,14 @@ class Effect(StudyModel):
     source: str
 
 
+class LeftOutEffect(StudyModel):
+    """An effect that an installed package offers, and that is not in the catalogue."""
+
+    package: str = Field(description="that offers it, with its version", examples=["my-package 1.0"])
+    entry_point: str = Field(description="as the package names it", examples=["hose = my_package.hose:EFFECT"])
+    reason: str = Field(description="in words", examples=["ImportError: no module named 'hose'"])
+
+
 class ExampleTrial(StudyModel):
     """One swing of the simulated joint; all lists have the same length."""
 

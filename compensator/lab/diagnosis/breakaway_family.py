@@ -24,7 +24,7 @@ from compensator.lab.diagnosis.pictures import picture_of_breakaway
 from compensator.lab.diagnosis.wording import named_in_words
 from compensator.lab.effects.catalogue import candidates, effect_named
 from compensator.lab.effects.effect import Effect
-from compensator.lab.errors import NotApplicableError
+from compensator.lab.errors import EffectFailedError, NotApplicableError
 from compensator.lab.model.fit import fit_effects
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain, predicts_better
@@ -123,9 +123,13 @@ def breakaway_blocks(base: BreakawayFit, wanted: Sequence[Effect]) -> tuple[list
                 f"{values.max():.2g}; record {effect.excited_by}"
             )
             continue
-        shapes = rows.shapes(share)
-        for shape in shapes:
-            columns = rows.columns(share, shape)
+        try:
+            shapes = rows.shapes(share)
+            made = [(shape, rows.columns(share, shape)) for shape in shapes]
+        except EffectFailedError as reason:
+            left_out[effect.name] = str(reason)
+            continue
+        for shape, columns in made:
             if np.isfinite(columns).all():
                 weighted = weight[:, None] * columns[inside]
                 blocks.append(

@@ -5,7 +5,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
-from importlib.metadata import entry_points
 
 from compensator.lab.effects import free_curve
 from compensator.lab.effects.effect import Effect
@@ -58,10 +57,9 @@ from compensator.lab.effects.mechanics import (
     offset,
     spring,
 )
+from compensator.lab.effects.offered import LeftOut, offered_beside
 from compensator.lab.errors import UnknownEffectError
 from compensator.lab.recordings.facts import Facts
-
-ENTRY_POINT_GROUP = "friction_bench.effects"
 
 _OURS = (
     inertia,
@@ -111,11 +109,13 @@ _OURS = (
 @cache
 def catalogue() -> dict[str, Effect]:
     """Every known effect by name; ours first, then those of installed packages."""
-    effects = {module.EFFECT.name: module.EFFECT for module in _OURS}
-    for point in entry_points(group=ENTRY_POINT_GROUP):
-        effect: Effect = point.load()
-        effects.setdefault(effect.name, effect)
-    return effects
+    ours = {module.EFFECT.name: module.EFFECT for module in _OURS}
+    return ours | offered_beside(frozenset(ours)).effects
+
+
+def left_out() -> tuple[LeftOut, ...]:
+    """What installed packages offer and is not in the catalogue."""
+    return offered_beside(frozenset(module.EFFECT.name for module in _OURS)).left_out
 
 
 @cache

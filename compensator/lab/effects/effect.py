@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from compensator.lab.errors import EffectFailedError
 from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, EffortQuantity, Facts
 from compensator.lab.recordings.recording import SESSION_START, Condition, FloatArray
 from compensator.lab.recordings.reversals import Strokes, since_rest, strokes_of
@@ -318,6 +319,7 @@ class Effect:
         told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
         searched: shape -> whether a search for the best one goes there; a scan may, to see what fits better beyond.
         holds: shape that it takes in a model -> whether that is this effect still; None: any is.
+        offered_by: package that it comes from, with its version; "" of ours.
         ends_within_scan: so many of the shape's first values end within the scan: what fits best at an upper end goes
             on beyond it, and is something else.
     """
@@ -363,10 +365,35 @@ class Effect:
     grows: bool = False
     goes_round: Round | None = None
     told: Callable[[Facts, Shape], bool] = _nothing_told
+    offered_by: str = ""
 
     def grid(self, motions: Sequence[Motion]) -> list[Shape]:
         """Shapes to scan, given the motions of all trials."""
         return self.shapes(motions[0]) if self.shape_over is None else [self.shape_over(motions)]
+
+    @property
+    def in_full(self) -> str:
+        """Its name, with the package that it comes from."""
+        return f"{self.name}, of package {self.offered_by}," if self.offered_by else self.name
+
+    def try_out(self, motions: Sequence[Motion]) -> None:
+        """Make all its columns once, as is done with an effect that nobody here has tested.
+
+        Raises:
+            EffectFailedError: it cannot, or they cannot be used.
+        """
+        for shape in self.grid(motions):
+            for motion in motions:
+                columns = np.asarray(self.columns(motion, shape))
+                wanted = (len(self.parameters), len(motion.time_s))
+                if columns.shape != wanted:
+                    raise EffectFailedError(
+                        f"{self.in_full} makes columns of shape {columns.shape}; wanted is {wanted}"
+                    )
+                if not np.isfinite(columns).all():
+                    raise EffectFailedError(
+                        f"{self.in_full} makes columns that are not all numbers; `channels` has to name what it needs"
+                    )
 
     def ranges_in(self, quantity: EffortQuantity) -> list[tuple[float, float]]:
         """Lowest and highest possible coefficient of each parameter, in a quantity of effort."""

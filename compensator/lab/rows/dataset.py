@@ -421,6 +421,14 @@ class Dataset:
             if effect.varies_with == "temperature_c" or self._is_told(effect.varies_with):
                 lacks = f"it does not; record {effect.excited_by}"
             raise NotApplicableError(f"{effect.name} needs {effect.varies_with} to differ over the data, and {lacks}")
+        if effect.offered_by and effect.name not in self._tried_out:
+            effect.try_out([trial.motion for trial in self.trials])
+            self._tried_out.add(effect.name)
+
+    @cached_property
+    def _tried_out(self) -> set[str]:
+        """Effects of other packages whose columns could be made."""
+        return set()
 
     def _is_told(self, condition: str) -> bool:
         return any(condition in trial.signals.recording.conditions for trial in self.trials)

@@ -1,5 +1,6 @@
 """The catalogue, and an effect that another package offers."""
 
+import re
 import sys
 from dataclasses import replace
 
@@ -35,30 +36,88 @@ IMPOSTOR = Effect(**{**{n: getattr(EFFECT, n) for n in EFFECT.__dataclass_fields
 
 
 @pytest.fixture
-def hose(tmp_path, monkeypatch):
-    """A package on the path with two effects, one of them under a name of ours."""
-    (tmp_path / "hose_package.py").write_text(HOSE)
-    info = tmp_path / "hose_package-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: hose-package\nVersion: 1.0\n")
-    points = "[friction_bench.effects]\nhose = hose_package:EFFECT\nviscous = hose_package:IMPOSTOR\n"
-    (info / "entry_points.txt").write_text(points)
-    monkeypatch.syspath_prepend(tmp_path)
+def offering(tmp_path, monkeypatch):
+    """Put a package of some text on the path, with some entry points."""
+
+    def offer(text, *points):
+        (tmp_path / "hose_package.py").write_text(text)
+        info = tmp_path / "hose_package-1.0.dist-info"
+        info.mkdir()
+        (info / "METADATA").write_text("Metadata-Version: 2.1\nName: hose-package\nVersion: 1.0\n")
+        (info / "entry_points.txt").write_text("\n".join(["[friction_bench.effects]", *points]))
+        monkeypatch.syspath_prepend(tmp_path)
+        forget()
+
+    yield offer
+    forget()
+
+
+def forget():
     module.catalogue.cache_clear()
-    yield
-    module.catalogue.cache_clear()
+    module.offered_beside.cache_clear()
     sys.modules.pop("hose_package", None)
+
+
+@pytest.fixture
+def hose(offering):
+    """A package on the path with two effects, one of them under a name of ours."""
+    offering(HOSE, "hose = hose_package:EFFECT", "viscous = hose_package:IMPOSTOR")
 
 
 def test_an_effect_of_another_package_is_known_fitted_and_found(hose):
     assert effect_named("hose").title == "Hose"
     assert effect_named("viscous").title == "Viscous friction"  # ours are not replaced
+    assert [one.reason for one in module.left_out()] == ["there is an effect 'viscous' already; give it another name"]
     made = recordings(Joint(extra=lambda x: 0.04 * x.q**3), seed=2)
     dataset = make_dataset(made, FACTS, Processing())
     found = diagnose(fit_model(dataset, default_effects(FACTS)))
     assert found.candidates[0].effect.name == "hose"
     fit = fit_model(dataset, [*default_effects(FACTS), "hose"])
     assert fit.coefficients[-1] == pytest.approx(0.04, rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("raise RuntimeError('boom \\x1b[31m')", "RuntimeError: boom  [31m"),
+        ("import sys; sys.exit(3)", "it ends the program (3)"),
+        ("EFFECT = None", "it is of type NoneType; wanted is an Effect"),
+        ("", "AttributeError: module 'hose_package' has no attribute 'EFFECT'"),
+        (HOSE.replace('"Hose"', "None"), "its title is None; wanted is a text"),
+        (HOSE.replace('"hose"', '"viscous"'), "there is an effect 'viscous' already; give it another name"),
+        (HOSE.replace("{position}3", "{place}3"), "KeyError: 'place'"),
+    ],
+)
+def test_a_broken_effect_is_left_out_by_itself(offering, caplog, text, reason):
+    ours = {name: effect.title for name, effect in catalogue().items()}
+    offering(text, "hose = hose_package:EFFECT")
+    assert {name: effect.title for name, effect in catalogue().items()} == ours
+    (found,) = module.left_out()
+    assert (found.package, found.entry_point) == ("hose-package 1.0", "hose = hose_package:EFFECT")
+    assert found.reason == reason
+    assert f"effect hose = hose_package:EFFECT of hose-package 1.0 is left out: {reason}" in caplog.text
+
+
+@pytest.mark.parametrize(
+    ("columns", "reason"),
+    [
+        ("1 / 0", "hose, of package hose-package 1.0, failed: ZeroDivisionError: division by zero"),
+        ("exec('import sys; sys.exit(3)')", r"hose, of package hose-package 1.0, failed: it ends the program \(3\)"),
+        (
+            "motion.position",
+            r"hose, of package hose-package 1.0, makes columns of shape \(\d+,\); wanted is \(1, \d+\)",
+        ),
+        ("np.nan * motion.position[None]", "hose, of package hose-package 1.0, makes columns that are not all numbers"),
+    ],
+)
+def test_an_effect_whose_columns_fail_is_left_out_of_a_diagnosis_and_told(offering, columns, reason):
+    offering(HOSE.replace("(motion.position**3)[None]", columns), "hose = hose_package:EFFECT")
+    dataset = make_dataset(recordings(Joint(), seed=2), FACTS, Processing())
+    found = diagnose(fit_model(dataset, default_effects(FACTS)))
+    assert re.match(reason, found.left_out["hose"])
+    assert found.verdict == "nothing"
+    with pytest.raises(NotApplicableError, match=reason):
+        fit_model(dataset, [*default_effects(FACTS), "hose"])
 
 
 def test_without_that_package_it_is_unknown():

@@ -60,9 +60,9 @@ function described({ parameters, note, tags }) {
   return [conditions(parameters), note, tags.join(", ")].filter(Boolean).join(" · ");
 }
 
-export function queueWords({ state, reason, running, waiting }) {
+export function queueWords({ state, reason, running, waiting_count: count }) {
   const what = running ? `${running.kind} runs from the queue` : "Nothing runs from the queue";
-  const next = waiting.length ? `${waiting.length} waiting` : "nothing waits";
+  const next = count ? `${count} waiting` : "nothing waits";
   const still = state === "held" || state === "paused" ? ` The queue is paused${reason ? `: ${reason}` : ""}.` : "";
   return `${what}; ${next}.${still}`;
 }

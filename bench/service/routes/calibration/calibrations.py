@@ -97,10 +97,15 @@ async def create(
     request: Request, response: Response, store: StoreOf, runner: RunnerOf, body: NewCalibration
 ) -> Calibration:
     """From experiments that were run or imported; nothing moves. Takes a second or so."""
-    made = await in_worker(request, calibration.calibrate, store, body.experiment_ids, body.stribeck, body.note)
-    response.headers["Location"] = f"{request.url.path}/{made}"
-    note(request, f"made calibration {made} from experiments {', '.join(map(str, body.experiment_ids))}")
-    return represent(store.calibrations.get(made), _used_id(store, runner))
+
+    def made() -> Calibration:
+        number = calibration.calibrate(store, body.experiment_ids, body.stribeck, body.note)
+        note(request, f"made calibration {number} from experiments {', '.join(map(str, body.experiment_ids))}")
+        return represent(store.calibrations.get(number), _used_id(store, runner))
+
+    found = await in_worker(request, made)
+    response.headers["Location"] = f"{request.url.path}/{found.calibration_id}"
+    return found
 
 
 @router.get("", summary="What was calibrated", responses=problems(422))

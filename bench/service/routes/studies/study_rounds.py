@@ -59,7 +59,7 @@ async def begin_round(
     key: Key = None,
 ) -> Round:
     """Trials that tripped are kept out. 409 while those of the round before wait or run. Takes seconds."""
-    _refuse_while_recording(conductor, study_id)
+    await at_bench(request, _refuse_while_recording, conductor, study_id)
     found = await in_lab(
         request, bench.study.suggestion.next_round.next_round, study_id, runner.configuration, body.trials
     )
@@ -78,7 +78,7 @@ async def begin_round(
 
 def _refuse_while_recording(conductor: Conductor, study_id: int) -> None:
     """Raise while trials that the study asked for are in the queue."""
-    left = sum(one.note == note_for(study_id) for one in conductor.table.items(WAITING, RUNNING))
+    left = conductor.table.count_noted(note_for(study_id), WAITING, RUNNING)
     if left:
         raise BusyError(
             f"{left} trials that study {study_id} asked for are in the queue yet; wait for them, or remove them"
