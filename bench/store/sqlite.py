@@ -191,7 +191,7 @@ def explain(error: BaseException | None, path: Path, busy_timeout_s: float) -> S
     if name.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
         return StoreLockedError(
             f"{where} is locked by another process for more than {busy_timeout_s:g} s; "
-            "close the program that holds it open (an SQLite browser, a backup), then try again"
+            "end what holds it (an import, another friction-bench, a backup, an SQLite browser), then try again"
         )
     if name.startswith("SQLITE_FULL"):
         return StoreFullError(f"{where}: the disk is full; free some space, then start again. Earlier blocks are kept")
