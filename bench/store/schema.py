@@ -294,6 +294,7 @@ QUEUE_ITEM = Table(
     Column("created_utc", UtcDateTime, nullable=False),
     Column("finished_utc", UtcDateTime, nullable=True),
     Column("lab_claim", PlainText, nullable=True),  # of an item that was taken from the laboratory's queue
+    Column("owner", PlainText, nullable=True),  # who runs it, as of an experiment
     Index(None, "bench", "state", "place"),
     Index(None, "campaign_id"),
 )

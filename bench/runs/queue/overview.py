@@ -19,7 +19,7 @@ class QueueState:
     Attributes:
         state: "idle": nothing waits; "running"; "pausing": it stands still after the trial that runs; "paused": it does
             so, within an experiment; "held": nothing is started until somebody resumes.
-        reason: why it is held or paused.
+        reason: why it is held or paused; or which item another process runs, that this one waits for.
         running: the item whose experiment runs.
         waiting: in order.
         duration_s: estimate of all of them, in the joint's time, hanging of loads included.
@@ -56,4 +56,4 @@ def queue_state(conductor: Conductor, runner: BenchControl, ended: int = 0) -> Q
     duration_s = coming_s + (running.duration_s if running else 0.0)
     left_s = coming_s + (status.left_s if running else 0.0)
     out = conductor.table.ended(ended) if ended else []
-    return QueueState(state, held or "", running, waiting, duration_s, left_s, changes, out)
+    return QueueState(state, held or (conductor.elsewhere if waiting else ""), running, waiting, duration_s, left_s, changes, out)

@@ -12,6 +12,7 @@ from bench.store.database import Database
 from bench.store.errors import NotFoundError, StoreStateError
 from bench.store.schema import CAMPAIGN, EXPERIMENT, QUEUE_ITEM, QUEUE_STATE
 from bench.store.tables.experiments import insert_row, now
+from bench.store.upkeep.custody import Custody
 
 WAITING, RUNNING = "waiting", "running"
 LOST = "the process that ran the queue ended before its experiment was on record"
@@ -71,11 +72,13 @@ class QueueTable:
 
     Args:
         database: of the store.
+        custody: of the store; tells who runs an item, and whether that process lives.
         bench: its name; several benches may share a store.
     """
 
-    def __init__(self, database: Database, bench: str) -> None:
+    def __init__(self, database: Database, custody: Custody, bench: str) -> None:
         self._database = database
+        self._custody = custody
         self._bench = bench
 
     def add(self, items: Sequence[NewItem], campaign: Mapping[str, object] | None = None) -> list[int]:
@@ -164,11 +167,15 @@ class QueueTable:
 
     # what the conductor says
 
-    def begin(self, item_id: int) -> None:
-        """It is being started, as `move`."""
+    def begin(self, item_id: int) -> bool:
+        """It is being started by this process, as `move`. False, and it waits on, while another process runs one."""
         with self._database.writing() as connection:
             self._get_waiting(connection, item_id)
-            connection.execute(update(QUEUE_ITEM).where(ITEM.id == item_id).values(state=RUNNING))
+            if any(self._custody.lives_elsewhere(owner) for _, owner in self._running(connection)):
+                return False
+            values = {"state": RUNNING, "owner": self._custody.token()}
+            connection.execute(update(QUEUE_ITEM).where(ITEM.id == item_id).values(**values))
+            return True
 
     def began(self, item_id: int, experiment_id: int) -> None:
         """Its experiment is on record."""
@@ -176,19 +183,30 @@ class QueueTable:
 
     def give_back(self, item_id: int) -> None:
         """It could not be started yet: it waits again, at its place."""
-        self._set(item_id, state=WAITING)
+        self._set(item_id, state=WAITING, owner=None)
 
     def finish(self, item_id: int, outcome: str, reason: str) -> None:
         """It has ended."""
         self._set(item_id, state=outcome, reason=reason, finished_utc=now())
 
-    def settle(self) -> list[QueueItem]:
-        """Say of items that a dead process left running what became of them; those."""
-        left = self.items(RUNNING)
-        for item in left:
-            outcome, reason = self._end_of(item.experiment_id)
-            self.finish(item.id, outcome, reason)
-        return left
+    def settle(self) -> tuple[list[int], list[int]]:
+        """Say of items that nobody runs any more what became of them: those of dead processes, and of this one.
+
+        Called while this process runs none. Items of other processes that live are left alone.
+
+        Returns:
+            The items that were left, and those that others run.
+        """
+        with self._database.reading() as connection:
+            running = self._running(connection)
+        others = [item_id for item_id, owner in running if self._custody.lives_elsewhere(owner)]
+        left = [(item_id, owner) for item_id, owner in running if item_id not in others]
+        for item_id, owner in left:
+            if owner is not None and not self._custody.is_mine(owner):
+                self._custody.forget(owner)
+            outcome, reason = self._end_of(self.item(item_id).experiment_id)
+            self.finish(item_id, outcome, reason)
+        return [item_id for item_id, _ in left], others
 
     def held(self) -> str | None:
         """Why nothing is started; None where it may be."""
@@ -213,6 +231,11 @@ class QueueTable:
         if row is None:
             return "interrupted", GONE
         return (row.outcome, row.reason) if row.outcome != RUNNING else ("interrupted", LOST)
+
+    def _running(self, connection: Connection) -> list[tuple[int, str | None]]:
+        """Items that run, each with who runs it."""
+        query = select(ITEM.id, ITEM.owner).where(ITEM.bench == self._bench, ITEM.state == RUNNING)
+        return [(row.id, row.owner) for row in connection.execute(query.order_by(ITEM.place, ITEM.id))]
 
     def _set(self, item_id: int, **values: Any) -> None:
         with self._database.writing() as connection:
