@@ -19,7 +19,7 @@ from sqlalchemy.pool import ConnectionPoolEntry
 
 from bench.store.errors import StoreError, StoreFileError, StoreFullError, StoreLockedError, StoreReadOnlyError
 from bench.store.sqlite_file import SqliteFile
-from bench.store.tables.json_text import to_json
+from bench.store.tables.json_text import from_json, to_json
 from bench.store.upkeep import owner
 
 WAL_LIMIT_BYTES = 64 * 2**20  # the log is cut back to this after a large import
@@ -141,6 +141,7 @@ def _engine(file: SqliteFile, busy_timeout_s: float) -> Engine:
         creator=lambda: file.connect(busy_timeout_s),
         max_overflow=-1,
         json_serializer=to_json,
+        json_deserializer=from_json,
     )
 
     def prepare(connection: sqlite3.Connection, record: ConnectionPoolEntry | Pool) -> None:  # noqa: ARG001

@@ -56,4 +56,6 @@ def queue_state(conductor: Conductor, runner: BenchControl, ended: int = 0) -> Q
     duration_s = coming_s + (running.duration_s if running else 0.0)
     left_s = coming_s + (status.left_s if running else 0.0)
     out = conductor.table.ended(ended) if ended else []
-    return QueueState(state, held or (conductor.elsewhere if waiting else ""), running, waiting, duration_s, left_s, changes, out)
+    return QueueState(
+        state, held or (conductor.elsewhere if waiting else ""), running, waiting, duration_s, left_s, changes, out
+    )

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import datetime
-from typing import Any
+from typing import Any, Protocol
 
 from sqlalchemy import Connection, Row, delete, func, insert, select, update
 
@@ -12,7 +12,6 @@ from bench.store.database import Database
 from bench.store.errors import NotFoundError, StoreStateError
 from bench.store.schema import CAMPAIGN, EXPERIMENT, QUEUE_ITEM, QUEUE_STATE
 from bench.store.tables.experiments import insert_row, now
-from bench.store.upkeep.custody import Custody
 
 WAITING, RUNNING = "waiting", "running"
 LOST = "the process that ran the queue ended before its experiment was on record"
@@ -67,18 +66,34 @@ class QueueItem(NewItem):
 COLUMNS = tuple(ITEM[name] for name in QueueItem.__dataclass_fields__)
 
 
+class Owners(Protocol):
+    """Who runs an item, and whether that process lives: `Custody`."""
+
+    def token(self) -> str:
+        """That of this process. Called inside a transaction that writes."""
+
+    def is_mine(self, token: str | None) -> bool:
+        """Whether it is that of this process."""
+
+    def lives_elsewhere(self, token: str | None) -> bool:
+        """Whether another process lives that goes by it."""
+
+    def forget(self, token: str) -> None:
+        """Settle and remove what a dead process left."""
+
+
 class QueueTable:
     """The queue of one bench. Every method may be called from any thread.
 
     Args:
         database: of the store.
-        custody: of the store; tells who runs an item, and whether that process lives.
+        owners: of the store.
         bench: its name; several benches may share a store.
     """
 
-    def __init__(self, database: Database, custody: Custody, bench: str) -> None:
+    def __init__(self, database: Database, owners: Owners, bench: str) -> None:
         self._database = database
-        self._custody = custody
+        self._owners = owners
         self._bench = bench
 
     def add(self, items: Sequence[NewItem], campaign: Mapping[str, object] | None = None) -> list[int]:
@@ -171,9 +186,9 @@ class QueueTable:
         """It is being started by this process, as `move`. False, and it waits on, while another process runs one."""
         with self._database.writing() as connection:
             self._get_waiting(connection, item_id)
-            if any(self._custody.lives_elsewhere(owner) for _, owner in self._running(connection)):
+            if any(self._owners.lives_elsewhere(owner) for _, owner in self._running(connection)):
                 return False
-            values = {"state": RUNNING, "owner": self._custody.token()}
+            values = {"state": RUNNING, "owner": self._owners.token()}
             connection.execute(update(QUEUE_ITEM).where(ITEM.id == item_id).values(**values))
             return True
 
@@ -199,11 +214,11 @@ class QueueTable:
         """
         with self._database.reading() as connection:
             running = self._running(connection)
-        others = [item_id for item_id, owner in running if self._custody.lives_elsewhere(owner)]
+        others = [item_id for item_id, owner in running if self._owners.lives_elsewhere(owner)]
         left = [(item_id, owner) for item_id, owner in running if item_id not in others]
         for item_id, owner in left:
-            if owner is not None and not self._custody.is_mine(owner):
-                self._custody.forget(owner)
+            if owner is not None and not self._owners.is_mine(owner):
+                self._owners.forget(owner)
             outcome, reason = self._end_of(self.item(item_id).experiment_id)
             self.finish(item_id, outcome, reason)
         return [item_id for item_id, _ in left], others

@@ -67,7 +67,7 @@ class Custody:
         return self._claim is not None and self._claim.token == token
 
     def forget(self, token: str) -> None:
-        """A dead process leaves nothing more than what was settled."""
+        """Settle and remove what a dead process left."""
         self.settle()
         self._database.backend.forget(token)
 
