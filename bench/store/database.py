@@ -9,7 +9,9 @@ from sqlalchemy.exc import StatementError
 
 from bench.store.backend import Backend, Claim
 from bench.store.errors import StoreFileError, StoreLockedError, StoreValueError
+from bench.store.schema import UnreadableError
 from bench.store.tables.json_text import NoJsonError
+from bench.store.tables.unreadable import place_of_unreadable
 
 
 class Database:
@@ -93,6 +95,11 @@ class Database:
             NoJsonError,
         ) as error:  # a number or text that the database cannot hold
             raise StoreValueError(f"store '{self.where}': {error}") from error
+        except UnreadableError as error:
+            raise StoreFileError(
+                f"store '{self.where}'{place_of_unreadable(self.backend.engine)} cannot be read ({error}); restore a "
+                "copy, or save what can be read: friction-bench store repair"
+            ) from error
         except UnicodeDecodeError as error:  # what the database keeps, or says of itself, is no text any more
             damaged = f"store '{self.where}' is damaged ({error})"
             raise StoreFileError(

@@ -9,7 +9,7 @@ from bench import __version__
 from bench.store.database import Database
 from bench.store.errors import StoreFileError, StoreVersionError
 
-HEAD = "0011"  # the newest revision in migrations/versions
+HEAD = "0012"  # the newest revision in migrations/versions
 MIGRATIONS = Path(__file__).parent / "migrations"
 NEW_FILE = MIGRATIONS / "new_file.sql"  # `python -m tests.store.new_file` writes it
 

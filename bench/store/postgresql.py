@@ -26,7 +26,7 @@ from bench.store.errors import (
     StoreUnreachableError,
     StoreValueError,
 )
-from bench.store.tables.json_text import to_json
+from bench.store.tables.json_text import from_json, to_json
 
 WRITER_KEY = 0x46524943  # "FRIC": below all keys of claims
 CLAIM_PREFIX = "pg-"
@@ -65,6 +65,7 @@ class Postgresql:
             pool_pre_ping=True,  # the server may have been restarted
             max_overflow=-1,
             json_serializer=to_json,
+            json_deserializer=from_json,
         )
         event.listen(self.engine, "after_cursor_execute", _send_all)
 

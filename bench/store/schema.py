@@ -1,6 +1,9 @@
 """The tables. A change here needs a migration in `migrations/versions`."""
 
+import re
+from collections.abc import Callable
 from datetime import UTC, datetime
+from typing import Any
 
 from sqlalchemy import (
     JSON,
@@ -22,6 +25,10 @@ from sqlalchemy import (
 )
 
 
+class UnreadableError(ValueError):
+    """Raised for what stands in a column and cannot be what it is for."""
+
+
 class UtcDateTime(TypeDecorator[datetime]):
     """A time with time zone UTC, also where the database keeps none."""
 
@@ -38,6 +45,18 @@ class UtcDateTime(TypeDecorator[datetime]):
             return None
         return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
 
+    def result_processor(self, dialect: Dialect, coltype: object) -> Callable[[Any], Any] | None:
+        """As SQLAlchemy's; where that fails, the error says what is there."""
+        plain = super().result_processor(dialect, coltype)
+
+        def read(value: object) -> object:
+            try:
+                return value if plain is None else plain(value)
+            except (ValueError, TypeError) as error:
+                raise UnreadableError(f"no date: {str(value)[:40]!r}") from error
+
+        return read
+
 
 class PlainText(TypeDecorator[str]):
     """Text without NUL characters: PostgreSQL has no place for them, and a file moves between databases."""
@@ -49,6 +68,19 @@ class PlainText(TypeDecorator[str]):
         """Refuse a NUL character before it is written."""
         if value is not None and "\0" in value:
             raise ValueError(f"the text {value[:40]!r} has a NUL character in it, which cannot be kept; leave it out")
+        return value
+
+
+class OwnerToken(PlainText):
+    """The name of a process that runs something: part of the name of a file, or a number, see the backends' claims."""
+
+    cache_ok = True
+    FORM = re.compile(r"|[0-9]{1,10}-[0-9a-f]{12}|pg-[0-7]?[0-9a-f]{1,15}")
+
+    def process_result_value(self, value: str | None, dialect: Dialect) -> str | None:  # noqa: ARG002
+        """Refuse what no process is called."""
+        if value is not None and (not isinstance(value, str) or not self.FORM.fullmatch(value)):
+            raise UnreadableError(f"no name of a process: {str(value)[:40]!r}")
         return value
 
 
@@ -78,7 +110,7 @@ EXPERIMENT = Table(
     Column("note", PlainText, nullable=False),
     Column("provenance", JSON, nullable=False),
     Column("rig", JSON, nullable=False),
-    Column("owner", PlainText, nullable=True),  # who runs it, see owner.py
+    Column("owner", OwnerToken, nullable=True),  # who runs it, see owner.py
     Column("started_utc", UtcDateTime, nullable=False),
     Column("finished_utc", UtcDateTime, nullable=True),
     Column("outcome", PlainText, nullable=False),
@@ -294,6 +326,7 @@ QUEUE_ITEM = Table(
     Column("created_utc", UtcDateTime, nullable=False),
     Column("finished_utc", UtcDateTime, nullable=True),
     Column("lab_claim", PlainText, nullable=True),  # of an item that was taken from the laboratory's queue
+    Column("owner", OwnerToken, nullable=True),  # who runs it, as of an experiment
     Index(None, "bench", "state", "place"),
     Index(None, "campaign_id"),
 )

@@ -19,7 +19,7 @@ from sqlalchemy.pool import ConnectionPoolEntry
 
 from bench.store.errors import StoreError, StoreFileError, StoreFullError, StoreLockedError, StoreReadOnlyError
 from bench.store.sqlite_file import SqliteFile
-from bench.store.tables.json_text import to_json
+from bench.store.tables.json_text import from_json, to_json
 from bench.store.upkeep import owner
 
 WAL_LIMIT_BYTES = 64 * 2**20  # the log is cut back to this after a large import
@@ -141,6 +141,7 @@ def _engine(file: SqliteFile, busy_timeout_s: float) -> Engine:
         creator=lambda: file.connect(busy_timeout_s),
         max_overflow=-1,
         json_serializer=to_json,
+        json_deserializer=from_json,
     )
 
     def prepare(connection: sqlite3.Connection, record: ConnectionPoolEntry | Pool) -> None:  # noqa: ARG001
@@ -191,7 +192,7 @@ def explain(error: BaseException | None, path: Path, busy_timeout_s: float) -> S
     if name.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
         return StoreLockedError(
             f"{where} is locked by another process for more than {busy_timeout_s:g} s; "
-            "close the program that holds it open (an SQLite browser, a backup), then try again"
+            "end what holds it (an import, another friction-bench, a backup, an SQLite browser), then try again"
         )
     if name.startswith("SQLITE_FULL"):
         return StoreFullError(f"{where}: the disk is full; free some space, then start again. Earlier blocks are kept")

@@ -131,4 +131,4 @@ class Store(ExperimentStore, TrialStore, StudyStore):
 
     def queue(self, bench: str) -> QueueTable:
         """The queue of a bench."""
-        return QueueTable(self._database, bench)
+        return QueueTable(self._database, self.custody, bench)

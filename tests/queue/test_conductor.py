@@ -13,6 +13,7 @@ from bench.runs.lease import LeaseHeldError
 from bench.runs.queue.conductor import RESTARTED, Conductor
 from bench.runs.queue.overview import queue_state
 from bench.runs.runner import Runner
+from bench.store import Store
 from bench.store.errors import NotFoundError, StoreStateError
 from bench.store.tables.queue import NewItem
 from tests.control.fake_drive import FakeDrive
@@ -215,6 +216,25 @@ def test_what_ran_when_the_process_died_is_as_its_record_says(runner, store):
         ("interrupted", "the process that ran the queue ended before its experiment was on record"),
     ]
     conductor.close()
+
+
+def test_a_second_service_leaves_what_the_first_runs_and_waits_for_its_turn(conductor, store, tmp_path):
+    first, second = conductor.add([SLOW, steps()])
+    wait_for(lambda: conductor.table.item(first).experiment_id is not None)
+    with Store.open(f"sqlite:///{tmp_path / 'bench.sqlite'}") as other:
+        runner = Runner(default_configuration(), other)
+        beside = Conductor(runner, other)
+        beside.begin()
+        assert (beside.held, beside.table.item(first).state) == (RESTARTED, "running")
+        beside.resume()
+        wait_for(lambda: beside.elsewhere)
+        assert queue_state(beside, runner).reason == f"item {first} of this queue is run by another process"
+        wait_for(lambda: done(conductor) and done(beside))
+        beside.close()
+        runner.close()
+    assert [item.state for item in conductor.table.items()] == ["completed", "completed"]
+    one, another = (store.experiment(conductor.table.item(item_id).experiment_id) for item_id in (first, second))
+    assert one.finished_utc <= another.started_utc
 
 
 def _item():

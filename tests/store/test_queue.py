@@ -1,5 +1,7 @@
 """The queue and tags in either database: order, states, several benches in one store."""
 
+from pathlib import Path
+
 import pytest
 from sqlalchemy import select
 
@@ -7,6 +9,7 @@ from bench.store import Store
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
 from bench.store.schema import CAMPAIGN
 from bench.store.tables.queue import NewItem
+from tests.queue.waiting import wait_for
 
 
 def items(count):
@@ -57,6 +60,34 @@ def test_states_follow_one_another(store: Store) -> None:
     assert table.next().id == second
     table.hold(None)
     assert table.held() is None
+
+
+def test_an_item_of_a_living_process_is_left_alone_and_none_runs_beside_it(store: Store, store_url: str) -> None:
+    mine = store.queue("mine")
+    first, second = mine.add(items(2))
+    with Store.open(store_url) as other:
+        theirs = other.queue("mine")
+        assert theirs.begin(first)
+        assert mine.settle() == ([], [first])
+        assert not mine.begin(second)
+        assert [mine.item(item_id).state for item_id in (first, second)] == ["running", "waiting"]
+        assert store.queue("another bench").settle() == ([], [])
+        theirs.finish(first, "completed", "")
+        assert theirs.begin(second)
+    # a server notices some time later that a session is gone, and until then its claim lives
+    wait_for(lambda: mine.settle() == ([second], []), timeout_s=10.0)
+    assert mine.item(second).state == "interrupted"
+
+
+def test_nothing_is_left_of_a_process_that_was_killed_beside_an_item(sqlite_url: str, tmp_path: Path) -> None:
+    with Store.open(sqlite_url) as store:
+        dead = Store.open(sqlite_url)
+        [item_id] = dead.queue("mine").add(items(1))
+        dead.queue("mine").begin(item_id)
+        assert dead.custody._claim is not None
+        dead.custody._claim.release(keep_note=True)  # as the operating system does
+        assert store.queue("mine").settle() == ([item_id], [])
+        assert list(tmp_path.glob("*-owner-*")) == []
 
 
 def test_a_campaign_is_kept_with_its_items(store: Store) -> None:

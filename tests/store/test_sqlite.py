@@ -82,7 +82,7 @@ def test_a_lock_of_another_process_is_waited_for_and_then_named(url: str) -> Non
         experiment_id = begin(store)
         other.execute("BEGIN IMMEDIATE")
         with pytest.raises(
-            StoreLockedError, match=r"locked by another process for more than 0\.2 s; close the program"
+            StoreLockedError, match=r"locked by another process for more than 0\.2 s; end what holds it \(an import"
         ):
             begin_trial(store, experiment_id)
         assert store.experiments() != []  # readers do not mind

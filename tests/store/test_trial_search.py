@@ -57,6 +57,28 @@ def test_a_word_that_all_trials_have_restricts_nothing_and_one_that_all_but_one_
     assert 7 not in [trial.id for trial in found]
 
 
+def test_words_are_found_among_more_keys_texts_and_kinds_than_a_statement_names(store):
+    experiment = store.begin_experiment("steps", {}, "simulated", {}, {"name": "paper"})
+    conditions = [
+        {f"c{number}": number for number in range(1100)},
+        {f"t{number}": f"oil {number}" for number in range(1100)},
+    ]
+    conditions += [{"load_kg": 0.05}, {"heated": False}]
+    for number in range(120):
+        held = conditions[number] if number < len(conditions) else {}
+        store.begin_trial(experiment, f"trial {number}", f"k{number}", held, ["time_s"]).finish("completed", "", {})
+
+    def found(*words):
+        return [int(name.split()[1]) for name in names(store.search_trials(TrialQuery(words=words), 200))]
+
+    assert found("777.0") == found("c777") == [0]
+    assert found("t777") == found("oil 777") == found("oil") == [1]
+    assert found("0.5e2") == [0, 2, 49]  # the value, grams, the number of the trial
+    assert found("heated") == []
+    assert found("k11") == [11, *range(110, 120)]
+    assert found("1", "2", "3", "4", "5", "6", "7", "8") == [0, 1]
+
+
 def test_pages_are_cut_from_one_order(filled):
     query = TrialQuery(sort="kind", descending=True)
     whole = names(filled.search_trials(query, limit=COUNT))

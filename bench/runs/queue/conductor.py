@@ -15,6 +15,8 @@ from bench.store.tables.queue import WAITING, NewItem, QueueItem, QueueTable
 from drivers.errors import DriveError
 
 RESTARTED = "the service was started anew; look at the bench, then resume"
+LEFT = "the process that ran item {} of this queue has ended; look at the bench, then resume"
+ELSEWHERE = "item {} of this queue is run by another process"
 STOPPED = "stopped"
 LABORATORY = "the laboratory's queue"
 BUSY_S = 0.2  # until a bench is asked again that runs something that is not of the queue
@@ -35,11 +37,13 @@ class Conductor:
 
     Attributes:
         confirm: whether an item of the laboratory's queue, by its claim, may start now; asked before each.
+        elsewhere: which item another process runs while this one waits for it, in words.
     """
 
     def __init__(self, runner: BenchControl, store: Store, starting: Starting = lambda _name: nullcontext()) -> None:
         self.table: QueueTable = store.queue(runner.configuration.name)
         self.running: QueueItem | None = None
+        self.elsewhere = ""
         self.confirm: Callable[[str], bool] = lambda _claim: False
         self._runner, self._store, self._starting = runner, store, starting
         self._held: str | None = None
@@ -56,7 +60,7 @@ class Conductor:
         Raises:
             StoreError: it cannot be read.
         """
-        left = self.table.settle()
+        left, _ = self.table.settle()
         self._held = self._kept = self.table.held()
         if left or (self._held is None and self.table.items(WAITING)):
             self._held = RESTARTED
@@ -147,16 +151,24 @@ class Conductor:
             return None
         if self._held is not None:
             return 0.0  # since it was looked for: what is added after a pause stays
-        if not self._runner.wait(0.0):
+        if not self._runner.wait(0.0) or self._is_run_elsewhere():
             self._hung = None
             return BUSY_S
         return self._carry_out(item)
+
+    def _is_run_elsewhere(self) -> bool:
+        """Another process runs an item of this queue, or ended while it did so."""
+        left, others = self.table.settle()
+        if left:
+            self._hold(LEFT.format(left[0]))
+        self.elsewhere = ELSEWHERE.format(others[0]) if others else ""
+        return bool(left or others)
 
     def _carry_out(self, item: QueueItem) -> float:
         self.running = item  # before it waits no longer: at no moment does it seem that there is nothing to do
         try:
             if not self._begin(item):
-                return 0.0
+                return BUSY_S
             experiment_id = self._start(item)
             if experiment_id is None:
                 return BUSY_S
@@ -166,17 +178,18 @@ class Conductor:
         return 0.0
 
     def _begin(self, item: QueueItem) -> bool:
-        """It waits no longer. False where it is not to be started: the laboratory has it back, or gets it."""
+        """It waits no longer. False where it is not to be started: the laboratory has it back, or gets it.
+
+        Or another process was faster, and runs one.
+        """
         if item.lab_claim is None:
-            self.table.begin(item.id)
-            return True
+            return self.table.begin(item.id)
         confirmed = self.confirm(item.lab_claim)
         try:
             if not confirmed:
                 self.table.remove(item.id)
             elif self._held is None:  # else it is held since the laboratory was asked
-                self.table.begin(item.id)
-                return True
+                return self.table.begin(item.id)
         except (NotFoundError, StoreStateError):
             pass  # it was given back meanwhile
         return False

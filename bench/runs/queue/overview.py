@@ -20,7 +20,7 @@ class QueueState:
     Attributes:
         state: "idle": nothing waits; "running"; "pausing": it stands still after the trial that runs; "paused": it does
             so, within an experiment; "held": nothing is started until somebody resumes.
-        reason: why it is held or paused.
+        reason: why it is held or paused; or which item another process runs, that this one waits for.
         running: the item whose experiment runs.
         waiting: a page of what waits, in order.
         waiting_count: how many wait in all.
@@ -65,4 +65,5 @@ def queue_state(
     out = conductor.table.ended(ended) if ended else []
     shown, count = waiting[offset : offset + limit], len(waiting)
     more = offset + limit if offset + limit < count else None
-    return QueueState(state, held or "", running, shown, count, more, duration_s, left_s, changes, out)
+    reason = held or (conductor.elsewhere if waiting else "")
+    return QueueState(state, reason, running, shown, count, more, duration_s, left_s, changes, out)

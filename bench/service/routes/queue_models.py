@@ -107,7 +107,7 @@ class Queue(BaseModel):
     state: Literal["idle", "running", "pausing", "paused", "held"] = Field(
         description="held: nothing is started until somebody resumes; pausing: it stands still after its present trial"
     )
-    reason: str = Field(description="why it is held or paused")
+    reason: str = Field(description="why it is held or paused, or that another process runs an item")
     running: Item | None
     waiting: list[Item] = Field(description="a page of those that wait, in the order in which they will be run")
     waiting_count: int = Field(description="how many wait in all")

@@ -178,7 +178,7 @@ CREATE TABLE queue_item (
 	reason TEXT NOT NULL, 
 	experiment_id INTEGER, 
 	created_utc DATETIME NOT NULL, 
-	finished_utc DATETIME, lab_claim TEXT, 
+	finished_utc DATETIME, lab_claim TEXT, owner TEXT, 
 	CONSTRAINT pk_queue_item PRIMARY KEY (id), 
 	CONSTRAINT fk_queue_item_campaign_id FOREIGN KEY(campaign_id) REFERENCES campaign (id) ON DELETE CASCADE
 )

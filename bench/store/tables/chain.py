@@ -12,9 +12,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from hashlib import sha256
+from types import MappingProxyType
 from typing import Any
 
-from sqlalchemy import Connection, Row, Select, Table, insert, select
+from sqlalchemy import Connection, Select, Table, insert, select
 
 from bench.store.schema import (
     ACCESS_TOKEN,
@@ -102,16 +103,18 @@ def link_of(before: str, entry: Mapping[str, Any]) -> str:
 
 def seal(connection: Connection, subject: str, row_ids: Iterable[int]) -> None:
     """Enter records as they are now: they were just kept or changed."""
-    for row_id in row_ids:
-        digest = digest_of(connection, subject, row_id)
-        if digest is not None:
-            _append(connection, subject, row_id, KEPT, digest)
+    digests = ((row_id, digest_of(connection, subject, row_id)) for row_id in row_ids)
+    enter(connection, subject, {row_id: digest for row_id, digest in digests if digest is not None})
+
+
+def enter(connection: Connection, subject: str, digests: Mapping[int, str]) -> None:
+    """Enter records whose digests are known: `digest_of` was asked before this transaction, which is short then."""
+    _append(connection, subject, KEPT, digests)
 
 
 def seal_removal(connection: Connection, subject: str, row_ids: Iterable[int]) -> None:
     """Enter that records are removed, in an orderly way."""
-    for row_id in row_ids:
-        _append(connection, subject, row_id, REMOVED, "")
+    _append(connection, subject, REMOVED, dict.fromkeys(row_ids, ""))
 
 
 def head(connection: Connection) -> tuple[int, str]:
@@ -126,13 +129,22 @@ def entries(connection: Connection) -> Iterator[Entry]:
     yield from (Entry(**row._asdict()) for row in found)
 
 
-def digest_of(connection: Connection, subject: str, row_id: int) -> str | None:
-    """SHA-256 of a record with all that belongs to it, hexadecimal; None where it is not there."""
+def digest_of(
+    connection: Connection, subject: str, row_id: int, changes: Mapping[str, object] = MappingProxyType({})
+) -> str | None:
+    """SHA-256 of a record with all that belongs to it, hexadecimal; None where it is not there.
+
+    Args:
+        connection: inside a transaction.
+        subject: one of `SUBJECTS`.
+        row_id: of the record.
+        changes: columns of its row that will have these values once it is entered.
+    """
     of = SUBJECTS[subject]
     row = connection.execute(select(of.table).where(of.table.c.id == row_id)).one_or_none()
     if row is None:
         return None
-    found = sha256(_text(row))
+    found = sha256(_text(row._asdict() | dict(changes)))
     for part, key, order in of.parts:
         query = select(part).where(part.c[key] == row_id).order_by(*(part.c[name] for name in order))
         _take(connection, query, found.update)
@@ -141,19 +153,25 @@ def digest_of(connection: Connection, subject: str, row_id: int) -> str | None:
 
 def _take(connection: Connection, query: Select[Any], update: Callable[[bytes], object]) -> None:
     for row in connection.execute(query, execution_options={"yield_per": FETCHED}):
-        update(_text(row))
+        update(_text(row._asdict()))
 
 
-def _append(connection: Connection, subject: str, row_id: int, state: str, digest: str) -> None:
+def _append(connection: Connection, subject: str, state: str, digests: Mapping[int, str]) -> None:
+    if not digests:
+        return
     last, before = head(connection)
-    entry = {"id": last + 1, "at_utc": datetime.now(UTC), "subject": subject, "row_id": row_id, "state": state}
-    entry["digest"] = digest
-    connection.execute(insert(CHAIN).values(**entry, link=link_of(before, entry)))
+    common = {"at_utc": datetime.now(UTC), "subject": subject, "state": state}
+    made: list[dict[str, object]] = []
+    for place, (row_id, digest) in enumerate(digests.items(), last + 1):
+        entry = {**common, "id": place, "row_id": row_id, "digest": digest}
+        before = link_of(before, entry)
+        made.append({**entry, "link": before})
+    connection.execute(insert(CHAIN), made)
 
 
-def _text(row: Row[Any]) -> bytes:
+def _text(row: Mapping[str, object]) -> bytes:
     """A row as text that is the same in every database."""
-    values = {name: _plain(value) for name, value in row._asdict().items()}
+    values = {name: _plain(value) for name, value in row.items()}
     return json.dumps(values, sort_keys=True, separators=(",", ":"), default=str).encode() + b"\n"
 
 

@@ -9,7 +9,7 @@ from sqlalchemy import Connection, Table, insert, select, update
 
 from bench.json_types import Values
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
-from bench.store.records import HIDDEN, OUTCOMES, SOURCES, Experiment, NewExperiment
+from bench.store.records import HIDDEN, IMPORTING, OUTCOMES, SOURCES, Experiment, NewExperiment
 from bench.store.schema import EXPERIMENT, HANDED_IN, TRIAL
 from bench.store.tables import chain, tags
 
@@ -60,12 +60,22 @@ def finish(connection: Connection, experiment_id: int, outcome: str, reason: str
     chain.seal(connection, "experiment", [experiment_id])
 
 
-def show(connection: Connection, experiment_id: int) -> None:
-    """Let an import be seen that is complete."""
+def show(connection: Connection, experiment_id: int, digests: Mapping[int, str]) -> None:
+    """Let an import be seen that is complete.
+
+    Args:
+        connection: inside a transaction that writes, in which its trials were given their ends.
+        experiment_id: the import.
+        digests: of its trials.
+
+    Raises:
+        StoreStateError: another process took this one for dead, and removed what came in.
+    """
     end = {"finished_utc": now(), "outcome": "completed", "owner": None}
-    connection.execute(update(EXPERIMENT).where(EXPERIMENT.c.id == experiment_id).values(**end))
-    of_it = select(TRIAL.c.id).where(TRIAL.c.experiment_id == experiment_id).order_by(TRIAL.c.id)
-    chain.seal(connection, "trial", connection.execute(of_it).scalars().all())
+    coming = (EXPERIMENT.c.id == experiment_id) & (EXPERIMENT.c.outcome == IMPORTING)
+    if connection.execute(update(EXPERIMENT).where(coming).values(**end)).rowcount != 1:
+        raise StoreStateError(f"the import {experiment_id} was removed by another process meanwhile; import it again")
+    chain.enter(connection, "trial", digests)
     chain.seal(connection, "experiment", [experiment_id])
 
 

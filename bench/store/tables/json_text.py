@@ -1,4 +1,4 @@
-"""JSON as the store writes it: what is not a number is null, numpy's scalars and arrays are plain numbers."""
+"""JSON as the store writes and reads it: what is not a number is null, numpy's scalars and arrays are plain numbers."""
 
 import json
 import math
@@ -8,6 +8,8 @@ from enum import Enum
 from typing import Any
 
 import numpy as np
+
+from bench.store.schema import UnreadableError
 
 
 class NoJsonError(TypeError):
@@ -41,3 +43,15 @@ def plain(value: Any) -> Any:
 def to_json(value: Any) -> str:
     """Compact JSON text."""
     return json.dumps(plain(value), allow_nan=False, ensure_ascii=False, separators=(",", ":"))
+
+
+def from_json(text: str | bytes) -> Any:
+    """What a column of JSON holds.
+
+    Raises:
+        UnreadableError: it is no JSON.
+    """
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise UnreadableError(f"no JSON: {error}") from error

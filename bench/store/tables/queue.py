@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import datetime
-from typing import Any
+from typing import Any, Protocol
 
 from sqlalchemy import ColumnElement, Connection, Row, Select, delete, func, insert, select, update
 
@@ -67,16 +67,34 @@ class QueueItem(NewItem):
 COLUMNS = tuple(ITEM[name] for name in QueueItem.__dataclass_fields__)
 
 
+class Owners(Protocol):
+    """Who runs an item, and whether that process lives: `Custody`."""
+
+    def token(self) -> str:
+        """That of this process. Called inside a transaction that writes."""
+
+    def is_mine(self, token: str | None) -> bool:
+        """Whether it is that of this process."""
+
+    def lives_elsewhere(self, token: str | None) -> bool:
+        """Whether another process lives that goes by it."""
+
+    def forget(self, token: str) -> None:
+        """Settle and remove what a dead process left."""
+
+
 class QueueTable:
     """The queue of one bench. Every method may be called from any thread.
 
     Args:
         database: of the store.
+        owners: of the store.
         bench: its name; several benches may share a store.
     """
 
-    def __init__(self, database: Database, bench: str) -> None:
+    def __init__(self, database: Database, owners: Owners, bench: str) -> None:
         self._database = database
+        self._owners = owners
         self._bench = bench
 
     def add(self, items: Sequence[NewItem], campaign: Mapping[str, object] | None = None) -> list[int]:
@@ -179,11 +197,15 @@ class QueueTable:
 
     # what the conductor says
 
-    def begin(self, item_id: int) -> None:
-        """It is being started, as `move`."""
+    def begin(self, item_id: int) -> bool:
+        """It is being started by this process, as `move`. False, and it waits on, while another process runs one."""
         with self._database.writing() as connection:
             self._get_waiting(connection, item_id)
-            connection.execute(update(QUEUE_ITEM).where(ITEM.id == item_id).values(state=RUNNING))
+            if any(self._owners.lives_elsewhere(owner) for _, owner in self._running(connection)):
+                return False
+            values = {"state": RUNNING, "owner": self._owners.token()}
+            connection.execute(update(QUEUE_ITEM).where(ITEM.id == item_id).values(**values))
+            return True
 
     def began(self, item_id: int, experiment_id: int) -> None:
         """Its experiment is on record."""
@@ -191,19 +213,30 @@ class QueueTable:
 
     def give_back(self, item_id: int) -> None:
         """It could not be started yet: it waits again, at its place."""
-        self._set(item_id, state=WAITING)
+        self._set(item_id, state=WAITING, owner=None)
 
     def finish(self, item_id: int, outcome: str, reason: str) -> None:
         """It has ended."""
         self._set(item_id, state=outcome, reason=reason, finished_utc=now())
 
-    def settle(self) -> list[QueueItem]:
-        """Say of items that a dead process left running what became of them; those."""
-        left = self.items(RUNNING)
-        for item in left:
-            outcome, reason = self._end_of(item.experiment_id)
-            self.finish(item.id, outcome, reason)
-        return left
+    def settle(self) -> tuple[list[int], list[int]]:
+        """Say of items that nobody runs any more what became of them: those of dead processes, and of this one.
+
+        Called while this process runs none. Items of other processes that live are left alone.
+
+        Returns:
+            The items that were left, and those that others run.
+        """
+        with self._database.reading() as connection:
+            running = self._running(connection)
+        others = [item_id for item_id, owner in running if self._owners.lives_elsewhere(owner)]
+        left = [(item_id, owner) for item_id, owner in running if item_id not in others]
+        for item_id, owner in left:
+            if owner is not None and not self._owners.is_mine(owner):
+                self._owners.forget(owner)
+            outcome, reason = self._end_of(self.item(item_id).experiment_id)
+            self.finish(item_id, outcome, reason)
+        return [item_id for item_id, _ in left], others
 
     def held(self) -> str | None:
         """Why nothing is started; None where it may be."""
@@ -231,6 +264,11 @@ class QueueTable:
 
     def _mine(self, *states: str) -> ColumnElement[bool]:
         return (ITEM.bench == self._bench) & ITEM.state.in_(states)
+
+    def _running(self, connection: Connection) -> list[tuple[int, str | None]]:
+        """Items that run, each with who runs it."""
+        query = select(ITEM.id, ITEM.owner).where(self._mine(RUNNING))
+        return [(row.id, row.owner) for row in connection.execute(query.order_by(ITEM.place, ITEM.id))]
 
     def _set(self, item_id: int, **values: Any) -> None:
         with self._database.writing() as connection:

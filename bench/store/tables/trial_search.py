@@ -17,6 +17,7 @@ SORTED_BY: dict[str, Column[object]] = {
     "trial": TRIAL.c.id, "name": TRIAL.c.name, "kind": TRIAL.c.kind, "outcome": TRIAL.c.outcome, "rows": TRIAL.c.rows,
 }  # fmt: skip
 MOST_WORDS = 8
+LISTED = 100  # values that a statement names for each word; a database takes an expression of so many parts alone
 ESCAPE = "\\"
 ROUNDING = 5e-4  # relative: numbers are shown with four digits
 SHOWN_AS = {"_kg": 1e-3, "_rad": math.radians(1.0), "_rad_s": math.radians(1.0)}  # SI of what the page shows as 1
@@ -85,37 +86,63 @@ def _filters(connection: Connection, wanted: TrialQuery) -> list[ColumnElement[b
 def _words(connection: Connection, words: Sequence[str]) -> list[ColumnElement[bool]]:
     if not words:
         return []
-    keys = _values(connection, TRIAL_CONDITION.c.key)
-    few = {column: _values(connection, column) for column in (TRIAL.c.kind, TRIAL.c.outcome)}
-    return [one for word in words if (one := _has(connection, word, keys, few)) is not None]
+    columns: tuple[Column[str], ...] = (TRIAL.c.kind, TRIAL.c.outcome, TRIAL_CONDITION.c.key)
+    few = {column: _values(connection, column) for column in columns}
+    return [one for word in words if (one := _has(connection, word, few)) is not None]
 
 
-def _has(
-    connection: Connection, word: str, keys: list[str], few: Mapping[Column[str], list[str]]
-) -> ColumnElement[bool] | None:
+def _has(connection: Connection, word: str, few: Mapping[Column[str], list[str] | None]) -> ColumnElement[bool] | None:
     """A word is somewhere in the trial; None where that is so of all of them.
 
     Conditions have few texts and keys: they are found first, trials by index. So do columns of few values, as `few`
-    has them: their words are compared here, once each, and not with every trial.
+    has them: their words are compared here, once each, and not with every trial. Where there are more than `LISTED` of
+    them the database compares: a statement has room for so many values alone.
     """
     table = TRIAL_CONDITION.c
+
+    def named(column: Column[str]) -> ColumnElement[bool]:
+        values = few[column]
+        if values is None:
+            return _like(connection, column, word)
+        return column.in_([one for one in values if word.lower() in one.lower()])
+
     hits = [_like(connection, TRIAL.c[name], word) for name in ("name", "reason")]
-    hits += [column.in_([one for one in values if word.lower() in one.lower()]) for column, values in few.items()]
-    texts = select(table.key, table.text).where(table.text.is_not(None), _like(connection, table.text, word)).distinct()
-    by_key: dict[str, list[str]] = {}
-    for key, text in connection.execute(texts).all():
-        by_key.setdefault(key, []).append(text)
-    told = [and_(table.key == key, table.text.in_(found)) for key, found in by_key.items()]
+    hits += [named(TRIAL.c.kind), named(TRIAL.c.outcome)]
+    told = _texts(connection, word)
     if any(_every_trial(connection, one) for one in told):
         return None
-    named = [key for key in keys if word.lower() in key.lower()]
-    if named:  # a flag that is not set is no sign of what it is called
-        told.append(and_(table.key.in_(named), or_(table.flag.is_(None), table.flag.is_(True))))
+    # a flag that is not set is no sign of what it is called
+    told.append(and_(named(table.key), or_(table.flag.is_(None), table.flag.is_(True))))
     number = _number(word)
     if number is not None:
-        told += [and_(table.key == key, or_(*_about(table.number, number, key))) for key in keys]
+        told += _numbers(number, few[table.key])
         hits.append(TRIAL.c.id == number)
     return or_(*hits, *(TRIAL.c.id.in_(select(table.trial_id).where(one)) for one in told))
+
+
+def _texts(connection: Connection, word: str) -> list[ColumnElement[bool]]:
+    """A condition's text has the word in it."""
+    table, has = TRIAL_CONDITION.c, _like(connection, TRIAL_CONDITION.c.text, word)
+    texts = select(table.key, table.text).where(table.text.is_not(None), has).distinct().limit(LISTED + 1)
+    found = connection.execute(texts).all()
+    if len(found) > LISTED:
+        return [has]
+    by_key: dict[str, list[str]] = {}
+    for key, text in found:
+        by_key.setdefault(key, []).append(text)
+    return [and_(table.key == key, table.text.in_(of_key)) for key, of_key in by_key.items()]
+
+
+def _numbers(number: float, keys: list[str] | None) -> list[ColumnElement[bool]]:
+    """A condition is the number, as it is rounded where it is shown: in SI, or in grams and degrees."""
+    table = TRIAL_CONDITION.c
+    if keys is not None:
+        return [and_(table.key == key, _about(number, _scale(key))) for key in keys]
+    shown = [
+        and_(table.key.like(f"%{_escaped(end)}", escape=ESCAPE), _about(number, scale))
+        for end, scale in SHOWN_AS.items()
+    ]
+    return [or_(_about(number), *shown)]
 
 
 def _every_trial(connection: Connection, condition: ColumnElement[bool]) -> bool:
@@ -127,11 +154,16 @@ def _every_trial(connection: Connection, condition: ColumnElement[bool]) -> bool
 _COUNTED = select(func.count()).select_from(TRIAL).scalar_subquery()
 
 
-def _values(connection: Connection, column: Column[str]) -> list[str]:
-    """The values of an indexed column: from one to the next in the index, as there are few of them and many rows."""
+def _values(connection: Connection, column: Column[str]) -> list[str] | None:
+    """The values of an indexed column: from one to the next in the index, as there are few of them and many rows.
+
+    None where there are more than `LISTED`.
+    """
     found: list[str] = []
     following = connection.execute(select(func.min(column))).scalar_one()
     while following is not None:
+        if len(found) == LISTED:
+            return None
         found.append(following)
         following = connection.execute(select(func.min(column)).where(column > following)).scalar_one()
     return found
@@ -139,16 +171,21 @@ def _values(connection: Connection, column: Column[str]) -> list[str]:
 
 def _like(connection: Connection, column: ColumnElement[str], word: str) -> ColumnElement[bool]:
     """A column has the word in it, in any case. SQLite's LIKE ignores the case by itself, three times as fast."""
-    escaped = word.replace(ESCAPE, 2 * ESCAPE).replace("%", f"{ESCAPE}%").replace("_", f"{ESCAPE}_")
     compare = column.like if connection.dialect.name == "sqlite" else column.ilike
-    return compare(f"%{escaped}%", escape=ESCAPE)
+    return compare(f"%{_escaped(word)}%", escape=ESCAPE)
 
 
-def _about(column: ColumnElement[float], number: float, key: str) -> list[ColumnElement[bool]]:
-    """A condition is the number, as it is rounded where it is shown: in SI, or in grams and degrees."""
-    scale = next((scale for suffix, scale in SHOWN_AS.items() if key.endswith(suffix)), 1.0)
+def _escaped(word: str) -> str:
+    return word.replace(ESCAPE, 2 * ESCAPE).replace("%", f"{ESCAPE}%").replace("_", f"{ESCAPE}_")
+
+
+def _about(number: float, scale: float = 1.0) -> ColumnElement[bool]:
     spans = [sorted((value * (1 - ROUNDING), value * (1 + ROUNDING))) for value in {number, number * scale}]
-    return [column.between(low, high) for low, high in spans]
+    return or_(*(TRIAL_CONDITION.c.number.between(low, high) for low, high in spans))
+
+
+def _scale(key: str) -> float:
+    return next((scale for suffix, scale in SHOWN_AS.items() if key.endswith(suffix)), 1.0)
 
 
 def _number(word: str) -> float | None:

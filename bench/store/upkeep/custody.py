@@ -58,6 +58,19 @@ class Custody:
             self._claim = self._claim or self._database.claim()
             return self._claim.token
 
+    def lives_elsewhere(self, token: str | None) -> bool:
+        """Whether another process lives, or another store of this one, that goes by a token."""
+        return not self.is_mine(token) and self._database.backend.lives(token)
+
+    def is_mine(self, token: str | None) -> bool:
+        """Whether this store goes by a token."""
+        return self._claim is not None and self._claim.token == token
+
+    def forget(self, token: str) -> None:
+        """Settle and remove what a dead process left."""
+        self.settle()
+        self._database.backend.forget(token)
+
     def note(self, experiment_id: int, outcome: str, reason: str) -> None:
         """Keep an end that the database did not take."""
         self._unwritten[experiment_id] = (outcome, reason)

@@ -15,7 +15,7 @@ from sqlalchemy.engine import make_url
 from bench.store.address import database_of
 from bench.store.errors import StoreFileError
 from bench.store.migration import migrate
-from bench.store.schema import CHAIN, METADATA, SAMPLE_BLOCK, SAMPLE_OVERVIEW, TRIAL, PlainText, UtcDateTime
+from bench.store.schema import CHAIN, METADATA, SAMPLE_BLOCK, SAMPLE_OVERVIEW, TRIAL, OwnerToken, PlainText, UtcDateTime
 from bench.store.sqlite import file_of
 from bench.store.tables import chain
 from bench.store.tables.samples import SAMPLE_BYTES
@@ -27,6 +27,7 @@ from bench.store.upkeep.salvage import UNREADABLE, columns_of, damaged, rows_of
 READERS: tuple[tuple[type, Callable[[Any], object], str], ...] = (
     (JSON, lambda value: json.loads(value), "{}"),
     (UtcDateTime, lambda value: datetime.fromisoformat(value), "1970-01-01 00:00:00.000000"),
+    (OwnerToken, lambda value: _owner(value), ""),
     (PlainText, lambda value: _text(value), ""),
 )
 BLOCKS = (SAMPLE_BLOCK.name, SAMPLE_OVERVIEW.name)
@@ -114,9 +115,15 @@ def _readable(table: Table, values: dict[str, object]) -> Iterator[str]:
                 continue
             try:
                 read(value)
-            except (ValueError, TypeError):
+            except (ValueError, TypeError, RecursionError):
                 values[column.name] = instead
                 yield f"{table.name} {values.get('id', '')}: its {column.name} is lost, and '{instead}' since a repair"
+                break
+
+
+def _owner(value: object) -> None:
+    if not OwnerToken.FORM.fullmatch(str(value)):
+        raise ValueError
 
 
 def _text(value: object) -> None:
