@@ -8,6 +8,7 @@ from compensator.lab.left_over.bursts import Bursts, bursts_in_words, bursts_of,
 from compensator.lab.left_over.left_over import LeftOver, left_over, unexplained_in_words
 from compensator.lab.left_over.orders import recurring_in_words
 from compensator.lab.left_over.remainder import LEAST_SHARE
+from compensator.lab.left_over.repeated import recurring_share_in_words
 from compensator.lab.left_over.swinging import swinging_in_words
 from compensator.lab.left_over.wandering import wandering_in_words
 from compensator.lab.model.fitted import Fit
@@ -55,7 +56,7 @@ def what_remains(fit: Fit, show_in: MotionRows, name: str) -> list[Note]:
         values: dict[str, Value] = {"effect": name, "frequency_hz": swing.frequency_hz, "of_voltage": swing.of_voltage}
         return [Note("swings", text, values)]
     if (wandering := left.wandering) is not None:
-        text = f"After {name}, {_wanders(fit, left)}; repeat a trial to see whether it comes again."
+        text = f"After {name}, {_wanders(fit, left)}. {recurring_share_in_words(left.recurs)}"
         return [Note("wanders", text, {"effect": name, "what": wandering.what, "share": wandering.share})]
     text = (
         f"After {name}, what is left is still more than noise, {left.remainder.share:.1%} of the effort, and "

@@ -8,6 +8,7 @@ from compensator.lab.left_over.constants import Constants
 from compensator.lab.left_over.error_budget import PLAIN, WANDERING_BESIDE_A_NAME
 from compensator.lab.left_over.orders import Line, line_of, recurring_in_words
 from compensator.lab.left_over.remainder import LEAST_SHARE, Remainder, remainder_of
+from compensator.lab.left_over.repeated import recurring_share_in_words, share_that_recurs
 from compensator.lab.left_over.swinging import Swing, ripple_of, swing_of, swinging_in_words
 from compensator.lab.left_over.wandering import Wandering, wandering_of
 from compensator.lab.model.fit import widened
@@ -29,12 +30,14 @@ class LeftOver:
         swing: that it swings at one frequency; None where it does not for sure.
         wandering: that something constant is another one for seconds, however little; None where it is not for sure.
         line: that it comes back with the position; None where it does not for sure, and near reversals.
+        recurs: how much of it comes again in repeated trials; None where there are none.
     """
 
     remainder: Remainder
     swing: Swing | None
     wandering: Wandering | None = None
     line: Line | None = None
+    recurs: float | None = None
 
     @property
     def is_more_than_noise(self) -> bool:
@@ -51,18 +54,20 @@ def left_over(gathered: Candidates) -> LeftOver:
     """
     dataset, rows, base = gathered.fit.dataset, gathered.rows, gathered.as_measured(WITH_CHAIN)
     determined = RowWeights.learnt(dataset, gathered.fit.residual, rows).determined(dataset, rows)
-    remainder = remainder_of(dataset, determined * base.residual / gathered.weights, rows)
+    residual = determined * base.residual / gathered.weights
+    remainder, recurs = remainder_of(dataset, residual, rows), share_that_recurs(dataset, residual, rows)
     # so little may be of the motion, whose own frequencies most trials can share
     swing = swing_of(gathered) if remainder.share > LEAST_SHARE else None
     if gathered.show_in != "sliding":
-        return LeftOver(remainder, swing)
+        return LeftOver(remainder, swing, recurs=recurs)
     line = line_of(gathered)
     if not _is_plain(gathered.fit):
         # where the formula was found
-        return LeftOver(remainder, swing, wandering_of(gather_constants(gathered), WANDERING_BESIDE_A_NAME), line)
+        wandering = wandering_of(gather_constants(gathered), WANDERING_BESIDE_A_NAME)
+        return LeftOver(remainder, swing, wandering, line, recurs)
     in_motion = gather_in_motion(gathered.fit)
     wandering = wandering_of(gather_constants(in_motion), PLAIN.wandering)
-    return LeftOver(remainder, swing or ripple_of(in_motion), wandering, line)
+    return LeftOver(remainder, swing or ripple_of(in_motion), wandering, line, recurs)
 
 
 def gather_constants(gathered: Candidates) -> Constants:
@@ -110,5 +115,5 @@ def unexplained_in_words(left: LeftOver, driver: str | None, stretches: int, fac
         how = "it varies with nothing that is measured"
     return (
         f"{none}, yet what is left, {left.remainder.share:.1%} of the effort, is more than noise; {how}. "
-        "Repeat a trial: what comes again is the joint's, what does not has changed since."
+        f"{recurring_share_in_words(left.recurs)}"
     )
