@@ -4,7 +4,7 @@ import pytest
 from sqlalchemy import func, select, update
 
 from bench.store import Store
-from bench.store.errors import NotFoundError, StoreStateError
+from bench.store.errors import NotFoundError, StoreFileError, StoreStateError
 from bench.store.schema import EVENT, EXPERIMENT, MODEL, SAMPLE_BLOCK, TRIAL
 from tests.store.examples import begin, begin_trial, rows
 
@@ -45,7 +45,7 @@ def test_what_cannot_be_read_any_more_can_be_removed(store: Store) -> None:
     gone = recorded(store)
     with store._database.writing() as connection:
         connection.exec_driver_sql(f"UPDATE experiment SET parameters = '[[[' WHERE id = {gone}")
-    with pytest.raises(ValueError, match="Expecting value"):
+    with pytest.raises(StoreFileError, match=f"experiment, row {gone}: its parameters cannot be read"):
         store.experiment(gone)
     store.removal.experiment(gone)
     assert store.experiments() == []

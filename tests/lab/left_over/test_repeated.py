@@ -24,7 +24,8 @@ def residuals(dataset, joint, own, seed=5):
 @pytest.mark.parametrize(("joint", "own", "share"), [(1, 0, 1.0), (1, 1, 0.5), (1, 2, 0.2), (0, 1, 0.0)])
 def test_it_is_the_share_of_the_power_that_is_the_joints(dataset, joint, own, share):
     rows = np.ones(len(dataset.effort), dtype=bool)
-    assert share_that_recurs(dataset, residuals(dataset, joint, own), rows) == pytest.approx(share, abs=0.08)  # three standard errors
+    found = share_that_recurs(dataset, residuals(dataset, joint, own), rows)
+    assert found == pytest.approx(share, abs=0.08)  # three standard errors
 
 
 def test_rows_of_one_alone_do_not_count(dataset):
