@@ -11,6 +11,7 @@ from fastapi.encoders import jsonable_encoder
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 from starlette.responses import JSONResponse
 
 from bench.config.quantities import unit_of
@@ -169,6 +170,7 @@ class InvalidFieldsError(BenchError, ValueError):
 
 def install(app: FastAPI) -> None:
     """Make every error of the application a problem."""
+    app.add_exception_handler(ClientDisconnect, _gone)
 
     @app.exception_handler(BenchError)
     @app.exception_handler(DriveError)
@@ -204,6 +206,11 @@ def install(app: FastAPI) -> None:
             return problem_response(422, "the body is no JSON: it is not in UTF-8", kind="ValidationError")
         headers = dict(error.headers) if error.headers else None
         return problem_response(error.status_code, _detail(request, error), headers=headers)
+
+
+async def _gone(_request: Request, _error: Exception) -> JSONResponse:
+    # nobody reads it; without it the log would have a fault of the service for each line that breaks
+    return problem_response(408, "the connection ended before the body was there; send it again")
 
 
 def _body_model(request: Request) -> type[BaseModel] | None:
