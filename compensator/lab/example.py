@@ -88,8 +88,7 @@ def example_of(name: str) -> Example:
     added = _added(dataset.columns(effect, shapes[len(shapes) // 2]), effect.parameters, dataset.effort)
     driver = DRIVERS[effect.driver]
     trials = []
-    for index, (trial, load_kg) in enumerate(zip(dataset.trials, LOADS_KG, strict=True)):
-        rows = dataset.trial_index == index
+    for trial, rows, load_kg in zip(dataset.trials, dataset.trial_rows, LOADS_KG, strict=True):
         values = dataset.rows_of([driver.of(one) for one in dataset.trials])[rows]
         trials.append(ExampleTrial(load_kg, dataset.time_of(trial), values, dataset.effort[rows], added[rows]))
     unit = dataset.effort_definition.unit

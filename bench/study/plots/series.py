@@ -80,7 +80,8 @@ class _Shown:
 
 def _shown(dataset: Dataset, index: int) -> _Shown:
     trial = dataset.trials[index]
-    rows = np.flatnonzero(dataset.trial_index == index)
+    own = dataset.trial_rows[index]
+    rows = np.arange(own.start, own.stop)
     at = np.arange(0, len(rows), max(1, len(rows) // SERIES_POINTS))
     time = dataset.time_of(trial)[at]
     # rows are picked at one step: where a longer one lies between two, nothing was measured, or it was of no use

@@ -1,7 +1,7 @@
 """Measured against predicted effort: errors by trial and regime, residual against every driver, repeatability floor."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Literal
 
 import numpy as np
@@ -11,7 +11,7 @@ from compensator.lab.at_rest.rest_comparison import RestComparison, compare_at_r
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import HeldOut, relative_error, rms
 from compensator.lab.model.validation import held_out
-from compensator.lab.recordings.recording import BoolArray, IntArray
+from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.recordings.repeats import repeats
 from compensator.lab.rows.dataset import Dataset
@@ -19,6 +19,7 @@ from compensator.lab.rows.drivers import available
 from compensator.lab.rows.picture import BinnedMean, binned_mean
 
 Direction = Literal["forward", "backward"]
+FEWEST_REPEATED = 10  # rows at equal times, of which a scatter is told
 
 
 @dataclass(frozen=True)
@@ -78,8 +79,8 @@ def compare(fit: Fit) -> Comparison:
     """Hold a fitted model against all rows of its dataset."""
     dataset = fit.dataset
     trials = [
-        _error(fit, trial.signals.recording.name, dataset.counted & (dataset.trial_index == index))
-        for index, trial in enumerate(dataset.trials)
+        _error(fit, trial.signals.recording.name, dataset.counted[own], own)
+        for trial, own in zip(dataset.trials, dataset.trial_rows, strict=True)
     ]
     in_motion = (Regime.SLIDING, Regime.TRANSIENT)
     regimes = [_error(fit, regime.name.lower(), dataset.regime == regime) for regime in in_motion]
@@ -105,48 +106,45 @@ def compare(fit: Fit) -> Comparison:
 def repeatability_floor(fit: Fit) -> ErrorOf | None:
     """Scatter of the residual between trials that repeat each other: no model of the motion can explain it.
 
-    Repeats share kind and every condition but `repeat` and their time, and run the same target; at equal times half
-    the power of the difference of their residuals is what one trial alone scatters.
+    Repeats share kind and every condition but `repeat` and their time, and run the same target: at equal times they
+    scatter about their mean, by which each of n takes 1 / n of its own scatter away (pooled standard deviation).
     """
-    dataset, residual = fit.dataset, fit.residual
-    slots = [_slots(dataset, index) for index in range(len(dataset.trials))]
-    differences, efforts = [], []
-    for one, other in _repeats(dataset):
-        shared = _common_rows(slots[one], slots[other])
-        if shared is None:
-            continue
-        rows_one, rows_other = shared
-        differences.append((residual[rows_one] - residual[rows_other]) / np.sqrt(2.0))
-        efforts.append(dataset.effort[rows_one])
-    if not differences:
+    recordings = [trial.signals.recording for trial in fit.dataset.trials]
+    found = [_about_their_mean(fit, members) for members in repeats(recordings)]
+    scatter = np.concatenate([np.empty(0), *(about_mean for about_mean, _ in found)])
+    effort = np.concatenate([np.empty(0), *(own for _, own in found)])
+    if len(scatter) < FEWEST_REPEATED:
         return None
-    scatter, effort = np.concatenate(differences), np.concatenate(efforts)
     return ErrorOf("repeatability", len(scatter), rms(scatter), relative_error(scatter, effort))
 
 
-def _error(fit: Fit, name: str, rows: BoolArray) -> ErrorOf:
-    residual = fit.residual[rows]
-    return ErrorOf(name, int(rows.sum()), rms(residual), relative_error(residual, fit.dataset.effort[rows]))
+def _error(fit: Fit, name: str, rows: BoolArray, within: slice = slice(None)) -> ErrorOf:
+    """Over some of the rows within a part of all rows."""
+    residual, effort = fit.residual[within][rows], fit.dataset.effort[within][rows]
+    return ErrorOf(name, len(residual), rms(residual), relative_error(residual, effort))
 
 
-def _repeats(dataset: Dataset) -> list[tuple[int, int]]:
-    recordings = [trial.signals.recording for trial in dataset.trials]
-    return [pair for members in repeats(recordings) for pair in combinations(members, 2)]
+def _about_their_mean(fit: Fit, members: Sequence[int]) -> tuple[FloatArray, FloatArray]:
+    """What trials leave beside their mean at equal times, unbiased, and their effort there.
+
+    Rows at times at which no other trial has one do not count.
+    """
+    slots, rows = (np.concatenate(parts) for parts in zip(*(_slots(fit.dataset, one) for one in members), strict=True))
+    _, place, count = np.unique(slots, return_inverse=True, return_counts=True)
+    residual, together = fit.residual[rows], count[place]
+    shared = together > 1
+    about_mean = residual - (np.bincount(place, residual) / count)[place]
+    unbiased = about_mean[shared] * np.sqrt(together[shared] / (together[shared] - 1.0))
+    return unbiased, fit.dataset.effort[rows[shared]]
 
 
 def _slots(dataset: Dataset, index: int) -> tuple[IntArray, IntArray]:
-    """Times of one trial's counted rows, in steps that the filter lets apart, and where these rows are."""
-    own, step_s = dataset.trial_index == index, 1.0 / (2.0 * dataset.cutoff_hz)
-    time_s = dataset.time_of(dataset.trials[index])[dataset.counted[own]]
-    return np.round(time_s / step_s).astype(np.int64), np.flatnonzero(own & dataset.counted)
-
-
-def _common_rows(one: tuple[IntArray, IntArray], other: tuple[IntArray, IntArray]) -> tuple[IntArray, IntArray] | None:
-    """Rows of two trials (see `_slots`) at the same times, as index arrays; None where there are too few."""
-    _, at_one, at_other = np.intersect1d(one[0], other[0], return_indices=True)
-    if len(at_one) < 10:
-        return None
-    return one[1][at_one], other[1][at_other]
+    """Times of one trial's counted rows, in steps that the filter lets apart, each once, and where these rows are."""
+    own, step_s = dataset.trial_rows[index], 1.0 / (2.0 * dataset.cutoff_hz)
+    counted = np.flatnonzero(dataset.counted[own])
+    time_s = dataset.time_of(dataset.trials[index])[counted]
+    slots, first = np.unique(np.round(time_s / step_s).astype(np.int64), return_index=True)
+    return slots, own.start + counted[first]
 
 
 def _residual_against(fit: Fit) -> list[ResidualAgainst]:

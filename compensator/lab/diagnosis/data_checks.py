@@ -51,16 +51,18 @@ def _mirrored_trials(fit: Fit) -> list[str]:
     dataset, found = fit.dataset, []
     kept = np.concatenate([term.kept for term in fit.terms])
     bounds, columns, effort = fit.bounds.of(kept), fit.columns[:, kept], fit.target
-    trained = columns[fit.training]
-    whole = trained.T @ trained, trained.T @ effort[fit.training]
-    for index, trial in enumerate(dataset.trials):
-        rows = dataset.counted & (dataset.trial_index == index)
-        own, own_effort = columns[rows & fit.training], effort[rows & fit.training]
+    training = columns[fit.training]
+    whole = training.T @ training, training.T @ effort[fit.training]
+    for index, there in enumerate(dataset.trial_rows):
+        rows = there.start + np.flatnonzero(dataset.counted[there])
+        trained = rows[fit.training[rows]]
+        own, own_effort = columns[trained], effort[trained]
         without = solve_without(whole, (own.T @ own, own.T @ own_effort), bounds)
         predicted = columns[rows] @ without
         as_is, turned = (rms(sign * effort[rows] - predicted) for sign in (1.0, -1.0))
-        if int(rows.sum()) >= FEWEST_ROWS and turned < MIRRORED * as_is:
-            others = _errors(dataset, effort - columns @ without, dataset.counted & ~rows)
+        if len(rows) >= FEWEST_ROWS and turned < MIRRORED * as_is:
+            others = _errors(dataset, effort - columns @ without, dataset.counted)
+            others.pop(index, None)
             if others and as_is < UNLIKE * float(np.median(list(others.values()))):
                 continue
             nothing = np.zeros_like(whole[0])
@@ -68,8 +70,8 @@ def _mirrored_trials(fit: Fit) -> list[str]:
             if rms(-effort[rows] - columns[rows] @ with_turned) > MIRRORED * rms(fit.residual[rows]):
                 continue
             found.append(
-                f"trial '{trial.signals.recording.name}' has the other sign: its effort leaves {as_is:.3g} "
-                f"{dataset.effort_definition.unit}, turned {turned:.3g}; turn it, or leave the trial out"
+                f"trial '{dataset.trials[index].signals.recording.name}' has the other sign: its effort leaves "
+                f"{as_is:.3g} {dataset.effort_definition.unit}, turned {turned:.3g}; turn it, or leave the trial out"
             )
     return found
 
@@ -77,9 +79,9 @@ def _mirrored_trials(fit: Fit) -> list[str]:
 def _errors(dataset: Dataset, residual: FloatArray, rows: BoolArray, fewest: int = 1) -> dict[int, float]:
     """What each trial that has so many of some rows (N,) leaves of them, root mean square, by its index."""
     return {
-        int(index): rms(residual[own])
-        for index in np.unique(dataset.trial_index[rows])
-        if int((own := rows & (dataset.trial_index == index)).sum()) >= fewest
+        index: rms(residual[there][own])
+        for index, there in enumerate(dataset.trial_rows)
+        if int((own := rows[there]).sum()) >= fewest
     }
 
 

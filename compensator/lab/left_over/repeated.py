@@ -25,8 +25,7 @@ def share_that_recurs(dataset: Dataset, residual: FloatArray, rows: BoolArray) -
     left[rows] = residual
     own = [
         (dataset.time_of(trial)[rows[there]], left[there][rows[there]])
-        for index, trial in enumerate(dataset.trials)
-        for there in [dataset.trial_index == index]
+        for trial, there in zip(dataset.trials, dataset.trial_rows, strict=True)
     ]
     shared, both = 0.0, 0.0
     for members in repeats(recordings):

@@ -61,7 +61,7 @@ def coverage_of(dataset: Dataset) -> Coverage:
     position = dataset.rows_of([trial.motion.position for trial in dataset.trials])
     moving = velocity[sliding]
     forward = float(np.mean(moving > 0.0)) if len(moving) else 0.0
-    ways = [velocity[sliding & (dataset.trial_index == index)] for index in range(len(dataset.trials))]
+    ways = [velocity[own][sliding[own]] for own in dataset.trial_rows]
     slow, fast = np.quantile(np.abs(moving), (0.05, 0.95)).tolist() if len(moving) else (0.0, 0.0)
     warmth = dataset.rows_of([trial.motion.temperature_c for trial in dataset.trials])
     recordings = [trial.signals.recording for trial in dataset.trials]

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Literal
 
 import numpy as np
@@ -164,6 +164,11 @@ class Dataset:
         return np.concatenate([np.full(len(t.picked), i, dtype=np.int64) for i, t in enumerate(self.trials)])
 
     @cached_property
+    def trial_rows(self) -> list[slice]:
+        """Where each trial's rows are among all rows (N,)."""
+        return _side_by_side(len(trial.picked) for trial in self.trials)
+
+    @cached_property
     def block_index(self) -> IntArray:
         """Which stretch of BLOCK_S each row belongs to, shape (N,); stretches never cross trials."""
         labels, start = [], 0
@@ -271,8 +276,7 @@ class Dataset:
     @cached_property
     def samples(self) -> list[slice]:
         """Where each trial's samples are in an array (m,) over all trials' motions."""
-        ends = np.cumsum([0, *(len(trial.motion.time_s) for trial in self.trials)]).tolist()
-        return [slice(first, end) for first, end in pairwise(ends)]
+        return _side_by_side(len(trial.motion.time_s) for trial in self.trials)
 
     def at_samples(self, by_trial: FloatArray) -> FloatArray:
         """Numbers of the trials (trials,) at every sample of theirs, shape (m,)."""
@@ -445,6 +449,11 @@ class Dataset:
         trials = self.trials[start : start + len(full_rate)]
         rates_hz = [trial.signals.rate_hz for trial in trials]
         return low_pass_thinned(full_rate, self.cutoff_hz, rates_hz, [trial.picked for trial in trials])
+
+
+def _side_by_side(lengths: Iterable[int]) -> list[slice]:
+    """Where parts of such lengths are in an array of all of them."""
+    return [slice(first, end) for first, end in pairwise(accumulate(lengths, initial=0))]
 
 
 def _passed_on(wanted: Sequence[tuple[Effect, Shape]], motion: Motion) -> FloatArray:

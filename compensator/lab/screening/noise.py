@@ -248,11 +248,11 @@ def _places(dataset: Dataset, rows: BoolArray, residual: FloatArray) -> tuple[li
     speed = np.searchsorted(np.quantile(velocity, np.arange(1, SPEEDS) / SPEEDS), velocity)
     overall = _power_by_kind(residual, speed) / np.maximum(np.bincount(speed, minlength=SPEEDS), 1)
     found, longest, start = [], 1, 0
-    for index, trial in enumerate(dataset.trials):
+    for trial, there in zip(dataset.trials, dataset.trial_rows, strict=True):
         times_s = dataset.time_of(trial)
         period_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else 1.0
         longest = max(longest, round(BLOCK_S / period_s))
-        chosen = rows[dataset.trial_index == index]
+        chosen = rows[there]
         if chosen.any():
             grid = np.round((times_s[chosen] - times_s[chosen][0]) / period_s).astype(np.int64)
             own = slice(start, start + len(grid))
