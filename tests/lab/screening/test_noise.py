@@ -29,6 +29,7 @@ def dataset(velocity: list[np.ndarray] | None = None) -> SimpleNamespace:
         steadiness=np.ones(TRIALS * ROWS),
         time_of=lambda _trial: time_s,
         trial_index=np.repeat(np.arange(TRIALS), ROWS),
+        trial_rows=[slice(trial * ROWS, (trial + 1) * ROWS) for trial in range(TRIALS)],
         block_index=np.concatenate([3 * trial + (time_s // 2.0).astype(int) for trial in range(TRIALS)]),
     )
 
