@@ -38,6 +38,7 @@ _VARIABLES = {
     "load_kg": _Variable("the load at the tip", lambda motion: np.full(len(motion.time_s), motion.load_kg)),
     "temperature": _Variable("temperature", lambda motion: motion.temperature_c),
     "time": _Variable("the time in the trial", lambda motion: motion.time_s),
+    "session_time": _Variable("the time in the session", lambda motion: motion.session_s),
     "since_reversal": _Variable(
         "the travel since the last reversal", lambda motion: motion.strokes.travel, rows="moving"
     ),
@@ -122,6 +123,7 @@ def _curve(name: str, variable: str, way: str) -> Effect:
         shape_names=tuple(f"{one} knot" for one in ("first", *_ORDINALS)),
         shape_units=("as the variable",) * (len(_ORDINALS) + 1),
         channels=("temperature_c",) if variable == "temperature" else (),
+        varies_with="session_s" if variable == "session_time" else None,
         builds_on=over.builds_on,
         rows=over.rows,
         provisional=True,

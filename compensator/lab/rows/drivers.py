@@ -54,6 +54,7 @@ DRIVERS: dict[str, Driver] = {
         Driver("load_kg", "load at the tip", "kg", _constant("load_kg")),
         Driver("temperature", "temperature", "degC", lambda t: t.motion.temperature_c),
         Driver("time", "time in the trial", "s", lambda t: t.motion.time_s),
+        Driver("session_time", "time in the session", "s", lambda t: t.motion.session_s),
         Driver("direction", "direction of motion", "1", lambda t: t.motion.direction),
         Driver("effort_rate", "rate of the predicted effort", "{effort}/s", lambda t: t.motion.effort_rate),
         Driver("effort", "predicted effort", "{effort}", lambda t: t.motion.predicted),
@@ -64,10 +65,15 @@ DRIVERS: dict[str, Driver] = {
 
 
 def available(dataset: Dataset) -> dict[str, FloatArray]:
-    """Values of every driver that is measured and varies over the rows, shape (N,) each."""
+    """Values of every driver that is measured and varies over the rows, shape (N,) each.
+
+    Where no trial tells when it began, there is no time in the session beside that in the trial.
+    """
     found = {}
     for name, driver in DRIVERS.items():
         values = dataset.rows_of([driver.of(trial) for trial in dataset.trials])
         if np.isfinite(values).all() and np.ptp(values) > 1e-9 * (1.0 + np.abs(values).max()):
             found[name] = values
+    if "session_time" in found and np.array_equal(found["session_time"], found.get("time", [])):
+        del found["session_time"]
     return found

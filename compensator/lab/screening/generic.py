@@ -17,7 +17,7 @@ from compensator.lab.rows.drivers import DRIVERS, available
 from compensator.lab.screening.base import HYSTERESIS_DRIVER
 
 KNOT_SHARES = np.linspace(0.0, 1.0, KNOTS)
-SPLINED = ("position", "velocity", "acceleration", "load", "load_kg", "temperature", "time")
+SPLINED = ("position", "velocity", "acceleration", "load", "load_kg", "temperature", "time", "session_time")
 SHARES = (0.06, 0.2, 0.6)  # of the travel: from beyond what surfaces give to what hardly slides
 
 
