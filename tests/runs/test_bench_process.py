@@ -22,6 +22,7 @@ from bench.runs.bench_process.errors import BenchProcessError, NotBegunError
 from bench.runs.bench_process.messages import error_of, failure_of
 from bench.runs.bench_process.remote_runner import RemoteRunner
 from bench.runs.bench_process.stop_line import LineStop, StopLine
+from bench.runs.bench_process.supervisor import Supervisor
 from bench.runs.runner import Runner
 from bench.store import Store
 from bench.store.errors import StoreFileError
@@ -194,6 +195,27 @@ def test_kill_of_the_bench_process_is_said_and_the_next_start_works(runner, stor
     assert runner.status().outcome == "completed"
     assert process_of(runner) != killed
     assert runner.live(last_row).restarted
+
+
+def test_a_start_finds_the_next_process_though_the_end_of_the_last_one_is_seen_late(tmp_path, monkeypatch):
+    listen = Supervisor._listen
+
+    def late(supervisor: Supervisor, child: Child) -> BaseException | None:
+        found = listen(supervisor, child)
+        time.sleep(0.3)  # a busy machine
+        return found
+
+    monkeypatch.setattr(Supervisor, "_listen", late)
+    database = tmp_path / "bench.sqlite"
+    with Store.open(f"sqlite:///{database}") as own, closing(RemoteRunner(configured(database), own)) as runner:
+        runner.start("steps", {"repeats": 1}, pace="fast")
+        assert runner.wait(PATIENCE_S)
+        killed = process_of(runner)
+        os.kill(killed, signal.SIGKILL)
+        os.waitid(os.P_PID, killed, os.WEXITED | os.WNOWAIT)
+        runner.start("steps", {"repeats": 1}, pace="fast")
+        assert runner.wait(PATIENCE_S)
+        assert process_of(runner) != killed
 
 
 def test_sigterm_to_the_bench_process_stops_the_joint_first(runner, store):

@@ -109,12 +109,13 @@ class RemoteRunner(BenchControl):
     def _call(self, method: Method, *arguments: Any) -> Any:
         stops = self._line.settled()  # what is asked for from here on counts
         for _ in range(TRIES - 1):
+            child = self._supervisor.child()
             with suppress(NotBegunError):  # it was just ending: another process is there next time
-                return self._call_once(method, arguments, stops)
-        return self._call_once(method, arguments, stops)
+                return self._call_once(child, method, arguments, stops)
+            self._supervisor.wait_for_end_of(child)
+        return self._call_once(self._supervisor.child(), method, arguments, stops)
 
-    def _call_once(self, method: Method, arguments: tuple[Any, ...], stops: int) -> Any:
-        child = self._supervisor.child()
+    def _call_once(self, child: Child, method: Method, arguments: tuple[Any, ...], stops: int) -> Any:
         number, answer = self._calls.open()
         try:
             child.send(Call(number, method, arguments, stops))

@@ -13,6 +13,7 @@ from bench.runs.bench_process.messages import Accepted, Failure, Reply, Seen, er
 from bench.runs.bench_process.mirror import Mirror
 from drivers.contract import Description
 
+HANGING_UP_S = 5.0  # from the first message that fails until its end is seen, on the busiest machine
 CLOSING_S = 100.0  # a process that has not ended by then is killed
 
 
@@ -56,6 +57,11 @@ class Supervisor:
             if self._child is None:
                 raise BenchProcessError(f"the bench process cannot be started: {self._failure}")
             return self._child
+
+    def wait_for_end_of(self, child: Child) -> None:
+        """Until it is seen that a process has hung up: before that, what it is sent fails, and `child` is still it."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._child is not child, HANGING_UP_S)
 
     def close(self) -> None:
         """End the process, and wait for its end. Safe to call twice."""
