@@ -20,7 +20,7 @@ from bench.control.ending import StopRequest
 from bench.control.limits import Guard
 from bench.control.loop import ControlLoop, joint_loop
 from bench.control.servo import current_servo
-from bench.evaluation.paper.measurements import run_experiment
+from bench.evaluation.paper.measurements import Measurement, measure, quietly
 from bench.experiments.kind import TrialPlan
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.store import Store
@@ -185,7 +185,7 @@ def whole_us(configuration: BenchConfiguration, kind: str) -> float:
 
         def once() -> float:
             began = process_time()
-            identity = run_experiment(configuration, store, kind, {})
+            identity = measure(configuration, store, Measurement(kind, {}), quietly).id
             used_s = process_time() - began
             return 1e6 * used_s / sum(trial.results["cycles"] for trial in store.trials(identity))
 

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.evaluation.paper.measurements import run_experiment
+from bench.evaluation.paper.measurements import Measurement, measure, quietly
 from bench.store import Store
 from drivers.contract import Command, Mode
 from sim_backend.drive.simulated_drive import SimulatedDrive
@@ -148,7 +148,7 @@ def bench_ratio() -> tuple[float, float]:
 
         def once() -> tuple[float, float]:
             began, used = perf_counter(), process_time()
-            identity = run_experiment(configuration, store, "steps", {"repeats": 4})
+            identity = measure(configuration, store, Measurement("steps", {"repeats": 4}), quietly).id
             wall_s, cpu_s = perf_counter() - began, process_time() - used
             simulated_s = sum(float(store.samples(trial.id)["time_s"][-1]) for trial in store.trials(identity))
             return simulated_s / wall_s, simulated_s / cpu_s
