@@ -5,6 +5,7 @@ service it is the time of the processor, its bench process included, until the f
 """
 
 import os
+import resource
 import signal
 import socket
 import subprocess
@@ -20,6 +21,7 @@ ASKED_S = 0.3
 ASKED_RATIO = 8.0
 SERVE_ROUNDS = 5
 ASKED_SERVE_S = 1.2
+ASKED_TRIALS_S = 0.5
 TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
 LOOK_EVERY_S = 0.02
 UP_WITHIN_S = 60.0
@@ -57,6 +59,24 @@ def first_page_cpu_s() -> float:
             process.wait(UP_WITHIN_S)
 
 
+def trials_cpu_s() -> float:
+    """Time of the processor of `friction-bench trials`, on a store of one experiment: the shortest of several [s]."""
+    with tempfile.TemporaryDirectory() as folder:
+        program = [str(Path(sys.executable).with_name("friction-bench")), "--store", f"{folder}/bench.sqlite"]
+        subprocess.run([*program, "run", "steps", "--repeats", "3", "--json"], stdout=subprocess.DEVNULL, check=True)
+        found = []
+        for _ in range(ROUNDS):
+            before_s = _children_s()
+            subprocess.run([*program, "trials"], stdout=subprocess.DEVNULL, check=True)
+            found.append(_children_s() - before_s)
+        return min(found)
+
+
+def _children_s() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def _first_page(url: str) -> None:
     deadline_s = time.monotonic() + UP_WITHIN_S
     while True:
@@ -84,6 +104,7 @@ def main() -> None:
     for name, time_s in found.items():
         print(f"{name:28} {time_s:6.3f} s   {time_s / base_s:5.1f} x python -c pass")
     print(f"asked of --help: at most {ASKED_S} s, and {ASKED_RATIO:g} x python -c pass")
+    print(f"{'friction-bench trials':28} {trials_cpu_s():6.2f} s of CPU; asked: at most {ASKED_TRIALS_S} s")
     serve_s = min(first_page_cpu_s() for _ in range(SERVE_ROUNDS))
     print(f"{'friction-bench serve':28} {serve_s:6.2f} s of CPU to the first page; asked: at most {ASKED_SERVE_S} s")
 

@@ -1,6 +1,7 @@
 """What many listeners of the live stream cost: `python -m tests.service.listeners 1000`.
 
-Half of them never read. Beside them a real-time run is started, `GET /bench` is asked twenty times, and STOP once.
+Half of them never read. Beside them a real-time run is started, `GET /bench` is asked twenty times, and STOP once. A run
+loses some cycles by itself: `python -m tests.service.listeners 1` tells how many.
 """
 
 import selectors
@@ -39,6 +40,14 @@ def _read(sockets: list[socket.socket], over: threading.Event) -> None:
                 key.fileobj.recv(65536)  # type: ignore[union-attr]
 
 
+def _trials(client: httpx.Client, experiment_id: int) -> list[dict[str, float]]:
+    """What the trials of an experiment say of themselves, once it has ended."""
+    while client.get(f"/experiments/{experiment_id}").json()["outcome"] == "running":
+        time.sleep(0.05)
+    listed = client.get("/trials", params={"experiment_id": experiment_id}).json()["items"]
+    return [client.get(f"/trials/{one['trial_id']}").json()["results"] for one in listed]
+
+
 def main() -> None:
     """Print how long the service took to answer."""
     count, over = int(sys.argv[1]), threading.Event()
@@ -48,7 +57,7 @@ def main() -> None:
         reader = threading.Thread(target=_read, args=(sockets[::2], over))
         reader.start()
         started = {"kind": "steps", "parameters": {"repeats": 20}, "pace": "real-time"}
-        client.post("/experiments", json=started).raise_for_status()
+        begun = client.post("/experiments", json=started).raise_for_status().json()["experiment_id"]
         time.sleep(2.0)
         took_s = []
         for _ in range(ASKED):
@@ -59,12 +68,14 @@ def main() -> None:
         began = time.perf_counter()
         client.post("/stop").raise_for_status()
         stopped_s = time.perf_counter() - began
+        trials = _trials(client, begun)
         over.set()
         reader.join()
         for one in sockets:
             one.close()
     print(f"{count} listeners: GET /bench median {statistics.median(took_s):.3f} s, longest {max(took_s):.3f} s; "
-          f"STOP {stopped_s:.3f} s")  # fmt: skip
+          f"STOP {stopped_s:.3f} s; cycles lost {sum(one['overruns'] for one in trials):g} of "
+          f"{sum(one['cycles'] for one in trials):g}")  # fmt: skip
 
 
 if __name__ == "__main__":
