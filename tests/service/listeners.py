@@ -1,7 +1,6 @@
 """What many listeners of the live stream cost: `python -m tests.service.listeners 1000`.
 
-Half of them never read. Beside them a real-time run is started, `GET /bench` is asked twenty times, and STOP once. The
-first run of a bench process loses some cycles by itself: `python -m tests.service.listeners 1` tells how many.
+Half of them never read. Beside them a real-time run is started, `GET /bench` is asked twenty times, and STOP once.
 """
 
 import selectors
