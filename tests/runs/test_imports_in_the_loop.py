@@ -20,7 +20,7 @@ def watched(loop, *arguments):
     try:
         return whole(loop, *arguments)
     finally:
-        # the simulated drive brings its compiler, and with it scipy.linalg, when it is switched on, before the first cycle
+        # the simulated drive brings its compiler, and with it scipy.linalg, before the first cycle
         used = ("scipy.special", "scipy.optimize", "scipy.stats", "scipy.signal", "scipy.interpolate")
         print("imported:", *sorted(name for name in set(sys.modules) - before if name.startswith(used)))
 
