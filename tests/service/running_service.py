@@ -83,7 +83,7 @@ def running_service(
         url = f"{'https' if tls else 'http'}://127.0.0.1:{listener.getsockname()[1]}"
         headers = {"Authorization": f"Bearer {TOKEN}"}
         try:
-            _wait_until_started(server)
+            _wait_until_started(server, thread)
             base = f"{url}/api/v1"
             with (
                 httpx.Client(base_url=base, headers=headers, timeout=60, verify=trust) as client,
@@ -96,8 +96,8 @@ def running_service(
             thread.join()
 
 
-def _wait_until_started(server: BenchServer) -> None:
-    deadline_s = time.monotonic() + 60
+def _wait_until_started(server: BenchServer, thread: threading.Thread) -> None:
+    """However long that takes: where it hangs, the test's own time limit shows what every thread does."""
     while not server.started:
-        assert time.monotonic() < deadline_s, "the service did not start within 60 s"
+        assert thread.is_alive(), "the service ended before it had started"
         time.sleep(0.01)
