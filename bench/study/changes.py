@@ -12,7 +12,7 @@ from bench.study.models.comparison import FittedParameter
 from bench.study.models.stages import CHANGE, FITTING, JUDGING
 from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates, compare_breakaway, held_out_both
-from compensator.lab.diagnosis.physical import TOLD, why_at_end, why_impossible
+from compensator.lab.diagnosis.physical import TOLD, why_impossible
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, held_out_gain
@@ -81,7 +81,7 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     gain = held_out_gain(before, after)
     starts = held_out_both(old, new) if any(one.breakaway for one in changed) else None
     only_there = all(one.rows == "breakaway" for one in changed)
-    impossible = next((found for name in added if (found := why_at_end(fit, name) or why_impossible(fit, name))), "")
+    impossible = next((found for name in added if (found := why_impossible(fit, name).words)), "")
     error = "held-out error" if rows == material.dataset.rows else "held-out error, near reversals too,"
     sentence = "" if only_there else _sentence(done, effect, error, before.relative, after.relative, gain, impossible)
     if starts is not None:

@@ -6,7 +6,7 @@ from bench.study import changes
 from bench.study.changes import add_effect, drop_effect
 from bench.study.create import create_study
 from bench.study.ladder import ladder
-from compensator.lab.diagnosis.physical import TOLD
+from compensator.lab.diagnosis.physical import TOLD, Impossible
 from compensator.lab.model.gain import Gain
 
 
@@ -29,15 +29,14 @@ def test_an_effect_near_reversals_is_added_and_dropped_on_the_same_rows(store, e
 @pytest.mark.parametrize(
     ("why", "end"),
     [
-        ({"why_at_end": "distance 0.273 rad is the most that it can be"},
+        ("distance 0.273 rad is the most that it can be",
          "But distance 0.273 rad is the most that it can be: leave it out."),
-        ({"why_impossible": TOLD}, "It is known from the rig, and no find; it helps: keep it."),
-        ({}, "It helps: keep it."),
+        (TOLD, "It is known from the rig, and no find; it helps: keep it."),
+        ("", "It helps: keep it."),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_said_when_it_is_added(store, experiment_id, monkeypatch, why, end):
     study = create_study(store, "memory", [experiment_id], (), cutoff_hz=6.0).study_id
-    for name in ("why_at_end", "why_impossible"):
-        monkeypatch.setattr(changes, name, lambda *_, name=name: why.get(name, ""))
+    monkeypatch.setattr(changes, "why_impossible", lambda *_: Impossible(why, ""))
     monkeypatch.setattr(changes, "held_out_gain", lambda *_: Gain(0.2, 0.1, 0.3))
     assert add_effect(store, study, "backlash").sentence.endswith(end)

@@ -2,6 +2,7 @@
 
 from bench.study.models.diagnosis import Conclusion, ConclusionCode, Finding, Value
 from compensator.lab.chance import SIGNIFICANT, stated
+from compensator.lab.diagnosis.confirmation import nearest_one
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 
 
@@ -27,14 +28,14 @@ def not_judged(effect: str, reason: str) -> Finding:
 
 
 def _code(found: Diagnosis) -> ConclusionCode:
-    if found.verdict == "missing" and found.candidates[0].gain.low <= 0.0:
-        return "likely"
     if found.verdict != "nothing":
         return found.verdict
     if found.too_short:
         return "too-short"
     if found.remains:
         return "unexplained"
+    if nearest_one(found.candidates) is not None:
+        return "likely"
     return "not-confirmed" if found.p_value <= SIGNIFICANT else "nothing"
 
 
@@ -45,8 +46,10 @@ def _values(found: Diagnosis) -> dict[str, Value]:
         values["p_value"] = stated(found.p_value)
     if found.driver is not None:
         values["driver"] = found.driver
-    if found.verdict == "missing":
-        best = found.candidates[0]
+    best = found.candidates[0] if found.verdict == "missing" else None
+    if _code(found) == "likely":
+        best = nearest_one(found.candidates)
+    if best is not None:
         values |= {
             "effect": best.effect.name,
             "held_out_before": best.before,

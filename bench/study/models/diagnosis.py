@@ -30,9 +30,9 @@ class Conclusion(StudyModel):
     """The answer itself, finer than the verdict: a code for programs, its numbers, and the same in one sentence."""
 
     code: ConclusionCode = Field(
-        description="of the verdict `missing`: missing, or likely, where the gain on other trials is not sure; of the "
-        "verdict `nothing`: nothing that these trials can show; more than noise, but no effect is "
-        "confirmed; trials too short to tell; or something is left that nothing explains"
+        description="of the verdict `nothing`: nothing that these trials can show; an effect is likely, but its gain "
+        "on other trials is not sure; more than noise, but no effect is confirmed; trials too short; or something is "
+        "left that nothing explains; else as the verdict"
     )
     values: dict[str, Value] = Field(description="names and numbers that the sentence is made of, SI")
     text: str

@@ -15,8 +15,6 @@ class Answer:
 
     Attributes:
         remains: more than noise is left that nothing named here explains.
-        evidence: noncentrality of what is named in steady sliding.
-        explained: the model with the effect that is named, where it shows in motion.
         Others as in `Diagnosis`.
     """
 
@@ -27,5 +25,8 @@ class Answer:
     driver: str | None
     notes: list[Note]
     remains: bool = False
-    explained: Fit | None = None
-    evidence: float = 0.0
+
+    @property
+    def explained(self) -> Fit | None:
+        """The model with the effect that is named, where it shows in motion."""
+        return self.candidates[0].explained if self.verdict == "missing" else None

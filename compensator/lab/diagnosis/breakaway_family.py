@@ -89,9 +89,9 @@ def breakaway_answer(
     sentence = _sentence(ranked[0], p_value, int(rows.training.sum()), stretches) if found else ""
     notes = [] if found else _too_few(stretches)
     verdict: Verdict = "missing" if found else "nothing"
-    effect, in_motion = ranked[0].effect, found and ranked[0].effect.rows != "breakaway"
-    explained = fit_effects(fit, [*fit.names, effect.name]) if in_motion else None
-    return Answer(verdict, sentence, p_value, ranked, None, notes, explained=explained), left_out
+    if found and ranked[0].effect.rows != "breakaway":
+        ranked[0] = replace(ranked[0], explained=fit_effects(fit, [*fit.names, ranked[0].effect.name]))
+    return Answer(verdict, sentence, p_value, ranked, None, notes), left_out
 
 
 def breakaway_blocks(base: BreakawayFit, wanted: Sequence[Effect]) -> tuple[list[Block], list[Base], dict[str, str]]:

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
@@ -20,31 +19,23 @@ def is_confirmed(candidate: Candidate) -> bool:
     """Whether the evidence pays for its parameters, and neither it nor the gain on held-out rows is luck.
 
     What explains nothing unless it is larger, smaller, or of the other sign than it can be, is the shadow of something
-    else. Neither flips of signs nor trials drawn again can be sure where a few stretches or trials hold most of the
-    evidence, as those at the highest speed do of drag: in steady sliding a very strong score stands without them,
-    if the error falls at all. Near reversals, where every measuring chain leaves a little, that is not enough.
+    else.
     """
     return not doubts(candidate)
 
 
-def is_sure(candidate: Candidate) -> bool:
-    """Whether a candidate is confirmed but for the size and sign that it would need."""
-    return not doubts(replace(candidate, impossible="", refused=""))
-
-
 def doubts(candidate: Candidate) -> list[str]:
     """Why a candidate is not confirmed, in words; none where it is."""
-    strong = candidate.score >= VERY_STRONG
     before, gain = candidate.before, candidate.gain
     explained = before**2 * (1.0 - (1.0 - gain.value) ** 2)
     chain = bool(candidate.effect.standing_in) or candidate.effect.rows != "sliding"
     least = LEAST_GAIN_OF_CHAIN if chain else LEAST_GAIN
     asked = {
         "score not above 0": candidate.score > 0.0,
-        LUCK: candidate.p_value <= SIGNIFICANT or strong,
+        LUCK: candidate.p_value <= SIGNIFICANT,
         f"explains under {LEAST_OF_EFFORT:.2%} of the effort": explained >= LEAST_OF_EFFORT**2,
         f"gain under {least:.1%}": gain.value >= least,
-        UNSURE_GAIN: gain.low > 0.0 or (strong and candidate.rows == "sliding"),
+        UNSURE_GAIN: gain.low > 0.0,
     }
     told = [reason for reason in (candidate.impossible, candidate.refused) if reason]
     return [doubt for doubt, holds in asked.items() if not holds] + told

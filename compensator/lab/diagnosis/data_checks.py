@@ -1,10 +1,11 @@
 """Problems of the data themselves, looked for before any effect is: a wrong sign or one odd trial mimics physics."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.stats import spearmanr
 
 from compensator.lab.diagnosis.alien_effort import alien_effort
-from compensator.lab.left_over.bursts import some_of
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import LEAST_OF_EFFORT, rms
 from compensator.lab.model.linear import solve, solve_without
@@ -23,6 +24,7 @@ TENFOLD = 10.0  # what loads seem to weigh of what they are said to, or the reve
 WORSE = 1.5  # times the error that the loads as told leave, for that to be sure
 ORDERED = 0.95  # rank correlation of two conditions over the trials
 WARMER_K = 2.0
+MOST_NAMES = 3
 
 
 def fatal_problems(fit: Fit) -> list[str]:
@@ -195,3 +197,9 @@ def _same_samples(fit: Fit) -> list[str]:
         for same in names.values()
         if len(same) > 1
     ]
+
+
+def some_of(names: Sequence[str]) -> str:
+    """The first few of them, and how many more there are."""
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return ", ".join(names[:MOST_NAMES]) + more

@@ -5,9 +5,10 @@ from typing import Literal
 
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.effects.effect import Effect, EffectRows, Shape
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain
-from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.rows.picture import BinnedMean
+from compensator.lab.screening.evidence import Evidence
 
 Verdict = Literal["missing", "nothing", "unknown-effect", "data-problem"]
 
@@ -43,7 +44,8 @@ class Candidate:
         gain: relative fall of that error, rows counting by how well the other trials can predict them.
         picture: why.
         refused: why it is not the answer though its own numbers confirm it; empty where nothing speaks against it.
-        errors: held out, with it, of its family's rows; None of starts from rest.
+        evidence: what the rows say for it; None of starts from rest.
+        explained: the model with it; None of starts from rest.
         impossible: why its size, sign or shape are not physical, in words; empty where they are.
         badge: the same in two or three words.
         rows: on which it was judged: for "breakaway", errors and picture are of the effort of breaking away.
@@ -62,7 +64,8 @@ class Candidate:
     rows: EffectRows = "sliding"
     refused: str = ""
     impossible: str = ""
-    errors: HeldOut | None = field(default=None, repr=False)
+    evidence: Evidence | None = field(default=None, repr=False)
+    explained: Fit | None = field(default=None, repr=False)
     badge: str = ""
 
     @property

@@ -17,7 +17,6 @@ from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import predicts_better
 from compensator.lab.model.validation import held_out
-from compensator.lab.screening.between_scanned import with_shapes_between
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Screening, screen, screen_against_noise
 from compensator.lab.screening.gathering import gather, with_noise
@@ -78,7 +77,7 @@ class FourFamilies:
         rows: MotionRows = "sliding" if one is self.chain and first is self.steady else "moving"
         if first.verdict == "missing":
             late = one.candidates[0].effect.driver == "effort_rate"
-            enough = first is not self.rest and (not late or one.evidence > first.evidence)
+            enough = first is not self.rest and (not late or _evidence(one) > _evidence(first))
             return enough and first.explained is not None and _predicts_better(named, first.explained, rows)
         curve = with_curve(self.gathered.fit, first.driver)
         return curve is None or not _predicts_better(curve, named, rows)
@@ -122,9 +121,16 @@ def _memory_of(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
     if too_few is not None:
         return None, too_few
     wide = widened(fit, "moving" if dataset.rows == "sliding" else dataset.rows)
-    gathered = with_shapes_between(gather(wide, "moving"))
-    screening = screen(gathered.bases, gathered.named, dataset.block_index[gathered.rows])
+    gathered = with_noise(gather(wide, "moving"))
+    assert gathered.noise is not None
+    screening = screen_against_noise(gathered.bases, gathered.named, gathered.noise)
     return answer_of(wide, gathered, screening, None), gathered.left_out
+
+
+def _evidence(answer: Answer) -> float:
+    """Noncentrality of what is named; 0 of what starts from rest alone name."""
+    evidence = answer.candidates[0].evidence
+    return 0.0 if evidence is None else evidence.noncentrality
 
 
 def _predicts_better(one: Fit, other: Fit, rows: MotionRows) -> bool:

@@ -4,15 +4,12 @@ from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.note import Note, Value
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.effects.free_curve import AGAINST_MOTION, FORCE, TIMES_SPEED, way_of
-from compensator.lab.left_over.bursts import Bursts, bursts_in_words, bursts_of, is_rattle
 from compensator.lab.left_over.left_over import LeftOver, left_over, unexplained_in_words
 from compensator.lab.left_over.orders import recurring_in_words
-from compensator.lab.left_over.remainder import LEAST_SHARE
 from compensator.lab.left_over.repeated import recurring_share_in_words
 from compensator.lab.left_over.swinging import swinging_in_words
 from compensator.lab.left_over.wandering import wandering_in_words
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.weights import row_weights
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Screening, screen
@@ -27,8 +24,6 @@ def without_a_name(gathered: Candidates, generic: Screening) -> str | None:
         generic: evidence for free curves.
     """
     fit = gathered.fit
-    if (bursts := large_bursts(gathered)) is not None:
-        return bursts_in_words(bursts, [_trial_names(fit)[index] for index in bursts.trials])
     left = left_over(gathered)
     if not left.is_more_than_noise:
         return None
@@ -63,15 +58,6 @@ def what_remains(fit: Fit, show_in: MotionRows, name: str) -> list[Note]:
         "has structure over no variable that is measured; add it and diagnose again."
     )
     return [Note("unexplained-remains", text, {"effect": name, "share": left.remainder.share})]
-
-
-def large_bursts(gathered: Candidates) -> Bursts | None:
-    """Stretches that leave far more than others of like motion; None where that is little, or where teeth bounce."""
-    dataset, rows, residual = gathered.fit.dataset, gathered.rows, gathered.fit.residual
-    weights = row_weights(dataset, residual, rows) * dataset.steadiness[rows]
-    found = bursts_of(dataset, residual[rows], weights, rows)
-    large = found.are_there and found.of_effort > LEAST_SHARE
-    return found if large and not is_rattle(found, dataset, residual[rows], rows) else None
 
 
 def _wanders(fit: Fit, left: LeftOver) -> str:

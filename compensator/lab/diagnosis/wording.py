@@ -3,7 +3,6 @@
 from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.base import HYSTERESIS_DRIVER
 from compensator.lab.screening.evidence import least_p_value
@@ -15,10 +14,9 @@ LOOK_AT_HOSES = "Look at hoses, cables and seals that bend with the joint."
 def missing_in_words(best: Candidate, p_value: float) -> str:
     """The answer where an effect is missing, with its numbers."""
     gain, where = best.gain.in_words(best.before, best.after, 0), ", near reversals too," * (best.rows == "moving")
-    sure = "" if best.gain.low > 0.0 else ", but not for sure"
     return (
         f"{named_in_words(best, 'trials')}: adding it changes the held-out error{where} from {best.before:.2%} to "
-        f"{best.after:.2%}{sure} ({gain}; {chance_in_words(p_value)})."
+        f"{best.after:.2%} ({gain}; {chance_in_words(p_value)})."
     )
 
 
@@ -64,23 +62,22 @@ def nothing_in_words(p_value: float, stretches: int | None = None) -> str:
 
 
 def nearest_in_words(nearest: Candidate) -> str:
-    """What comes nearest where no effect is confirmed, and what would decide."""
+    """What is likely where no effect is confirmed, and what would decide."""
     return (
-        f"The nearest is {nearest.effect.title.lower()} ({nearest.gain.in_words(nearest.before, nearest.after)}); to "
-        f"decide, record more of: {nearest.effect.excited_by}."
+        f"{nearest.effect.title} is likely ({nearest.gain.in_words(nearest.before, nearest.after)}), but it does not "
+        f"help on other trials for sure; to decide, record more of: {nearest.effect.excited_by}."
     )
 
 
 def named_in_words(best: Candidate, of: str) -> str:
-    """That an effect is missing, or likely, where its gain on other trials is not sure; and what it may be instead.
+    """That an effect is missing, and what it may be instead.
 
     Args:
         best: the effect.
         of: what cannot tell it from others: "trials", or "starts" from rest.
     """
-    missing = "is missing" if best.gain.low > 0.0 else "is likely missing"
     others = ", ".join(effect_named(name).title.lower() for name in best.rivals)
-    return f"{best.effect.title} {missing}" + (f"; these {of} cannot tell it from {others}" if others else "")
+    return f"{best.effect.title} is missing" + (f"; these {of} cannot tell it from {others}" if others else "")
 
 
 def _too_few(stretches: int) -> str:
@@ -89,16 +86,4 @@ def _too_few(stretches: int) -> str:
         f"These trials are too short to tell whether anything is missing: only {stretches} independent stretches of "
         f"{BLOCK_S:g} s, at best {chance_in_words(least_p_value(stretches))}, and {SIGNIFICANT:g} is needed; record "
         f"{BLOCK_S * (enough - stretches):g} more seconds of motion at least; other loads and speeds tell most."
-    )
-
-
-def bending_in_words(bends: Candidate, too_far: bool, facts: Facts, p_value: float) -> str:
-    """The answer where something comes up over a distance after a reversal that is not the friction itself."""
-    least = " or more" if too_far else ""
-    why = "is too far" if too_far else "is too small a part of the dry friction"
-    return (
-        "Something is missing, and it is none of the catalogue: it varies with the travel since the last reversal, "
-        f"over some {bends.shape[0]:.2g} {facts.position_unit}{least}, and {why} for "
-        f"surfaces that give before they slide ({chance_in_words(p_value)}; with such a curve the held-out error would "
-        f"fall from {bends.before:.2%} to {bends.after:.2%}). {LOOK_AT_HOSES}"
     )

@@ -217,15 +217,3 @@ def with_columns(fit: Fit, name: str, columns: FloatArray) -> Fit:
 
 def _no_columns(motion: Motion, _: Shape) -> FloatArray:
     raise NotImplementedError(f"a free curve knows its columns over rows, not over {len(motion.time_s)} samples")
-
-
-def with_effect(fit: Fit, name: str, shape: Shape, sliding: Fit | None = None) -> Fit:
-    """The model and one more effect of a given shape, refitted at the shapes already found.
-
-    Args:
-        fit: of the model.
-        name: of the effect.
-        shape: of it.
-        sliding: the model without it on rows of steady sliding, where it shows in others and that is known.
-    """
-    return fit_model(fit.dataset, [*fit.names, name], fit.training, {**fit.shapes, name: shape}, sliding)

@@ -41,12 +41,6 @@ def model_columns(fit: Fit, apart: Collection[str] = ()) -> FloatArray:
     return np.column_stack([fit.columns[:, free], *_tangents(fit), discrepancy_columns(fit, apart)])
 
 
-def open_columns(fit: Fit) -> FloatArray:
-    """What the model's formulas leave open, over all rows, shape (N, k); none where that is but a shape's tangent."""
-    found = discrepancy_columns(fit)
-    return np.column_stack([*_tangents(fit), found]) if found.shape[1] else found
-
-
 def discrepancy_columns(fit: Fit, apart: Collection[str] = ()) -> FloatArray:
     """What formulas leave open beside their shapes, over all rows, shape (N, k). Arguments as `model_columns`."""
     dataset = fit.dataset

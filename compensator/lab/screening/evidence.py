@@ -55,16 +55,6 @@ class Screening:
     p_value: float
     chance: Callable[[float], float] | None = None
 
-    def chance_of(self, name: str) -> float:
-        """The chance that luck alone brings any block to what one effect's best block reaches.
-
-        What is surest is not always what is named, since it may not help on held-out rows, or may not be physical; its
-        p-value is not that of another name.
-        """
-        if self.chance is None:
-            return self.p_value
-        return self.chance(min(item.p_value for item in self.evidence if item.block.name == name))
-
 
 def screen(
     bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, seed: int = 0, noise: Noise | None = None

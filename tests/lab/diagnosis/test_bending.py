@@ -13,7 +13,6 @@ from compensator.lab.diagnosis.unfollowed import provisional
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_effects, fit_model
 from compensator.lab.model.fitted import Fit
-from compensator.lab.recordings.reversals import deflection, strokes_of
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.generic import free_curves
@@ -92,29 +91,6 @@ def test_a_formula_that_imitates_it_is_its_name_unless_the_curve_predicts_better
     assert bends(bent)
     monkeypatch.setattr(unfollowed, "predicts_better", lambda *_: False)
     assert not bends(bent)
-
-
-def comes_up(friction_n_m: float, distance_rad: float) -> Law:
-    """Friction, of 0.12 N m in all, that comes up over a distance after a reversal (Dahl)."""
-
-    def law(x) -> np.ndarray:
-        strokes = strokes_of(x.q)
-        return friction_n_m * (deflection(strokes, distance_rad) - strokes.sign[strokes.index])
-
-    return law
-
-
-@pytest.mark.parametrize(
-    ("friction_n_m", "distance_rad", "verdict"),
-    [
-        (0.018, 0.05, "unknown-effect"),
-        (0.054, 0.001, "missing"),  # half of the distance, and more friction, explains nearly as much, and can be
-        (0.060, 0.003, "missing"),
-    ],
-)
-def test_a_part_of_friction_bends_only_where_all_that_is_as_likely_would_be_a_part(friction_n_m, distance_rad, verdict):
-    found = judged(fit_of(comes_up(friction_n_m, distance_rad))).memory
-    assert (found.verdict, found.candidates[0].effect.name) == (verdict, "pre_sliding"), found.sentence
 
 
 def test_nothing_bends_to_and_fro_along_with_a_shaft_that_turns_on():

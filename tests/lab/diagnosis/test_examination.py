@@ -1,20 +1,14 @@
 """When a candidate counts as confirmed."""
 
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any
 
-import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import examination
 from compensator.lab.diagnosis.confirmation import doubts, is_confirmed, nearest_one
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.wording import nearest_in_words
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.gain import Gain
-from compensator.lab.screening.base import Block
-from compensator.lab.screening.evidence import Evidence
 
 
 @pytest.mark.parametrize(
@@ -23,9 +17,8 @@ from compensator.lab.screening.evidence import Evidence
         (5.0, 0.001, 0.2, 0.1, True),
         (-1.0, 0.001, 0.2, 0.1, False),  # does not pay for its parameters
         (5.0, 0.02, 0.2, 0.1, False),  # may be luck
-        (50.0, 0.02, 0.2, 0.1, True),  # few stretches hold the evidence, but it is very strong
         (5.0, 0.001, 0.2, -0.01, False),  # held-out trials may not gain
-        (50.0, 0.001, 0.2, -0.01, True),  # few trials hold the gain, but the evidence is very strong
+        (50.0, 0.001, 0.2, -0.01, False),  # however strong the evidence
         (50.0, 0.001, -0.01, -0.2, False),  # held-out trials lose
         (50.0, 0.001, 0.0005, 0.0001, False),  # a gain of no use
     ],
@@ -33,13 +26,6 @@ from compensator.lab.screening.evidence import Evidence
 def test_score_luck_and_gain_must_all_speak_for_it(score, p_value, gain, low, confirmed):
     gained = Gain(gain, low, 2.0 * gain)
     candidate = Candidate(effect_named("spring"), (), score, p_value, 7.0, (), 0.1, 0.08, gained, None)
-    assert is_confirmed(candidate) == confirmed
-
-
-@pytest.mark.parametrize(("rows", "confirmed"), [("sliding", True), ("moving", False), ("breakaway", False)])
-def test_near_reversals_and_at_starts_a_strong_score_alone_does_not_make_a_gain_sure(rows, confirmed):
-    gained = Gain(0.3, -0.01, 0.4)
-    candidate = Candidate(effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, gained, None, rows)
     assert is_confirmed(candidate) == confirmed
 
 
@@ -91,26 +77,8 @@ def test_the_nearest_is_what_more_data_may_confirm(changed, near):
     assert (found is candidate) == near
     if found is not None:
         words = nearest_in_words(found)
-        assert words.startswith("The nearest is direction-asymmetric viscous friction (gain 1.7%, 90 % interval")
+        assert words.startswith("Direction-asymmetric viscous friction is likely (gain 1.7%, 90 % interval")
         assert words.endswith("to decide, record more of: several speeds in both directions.")
-
-
-@pytest.mark.parametrize("rows", ["sliding", "moving"])
-def test_in_the_ladder_a_name_is_held_against_the_rows_that_it_shows_in(monkeypatch, rows):
-    asked: list[Any] = []
-    fit: Any = SimpleNamespace(dataset=SimpleNamespace(rows="sliding"))
-
-    def held_out(model, chosen):
-        asked.append(chosen)
-        return SimpleNamespace(relative=0.05)
-
-    monkeypatch.setattr(examination, "held_out", held_out)
-    monkeypatch.setattr(examination, "held_out_gain", lambda *_: Gain(0.5, 0.4, 0.6))
-    gained = Gain(0.3, 0.2, 0.4)
-    one = Candidate(effect_named("backlash"), (), 50.0, 0.001, 7.0, (), 0.1, 0.07, gained, None, rows)
-    found = examination.as_in_the_ladder(one, fit, fit, rows)
-    assert asked == [rows] * 2
-    assert (found.after, found.gain.value) == (0.05, 0.5)
 
 
 @pytest.mark.parametrize(
@@ -134,14 +102,3 @@ def test_a_sign_or_size_that_cannot_be_is_the_shadow_of_something_else(rows):
     candidate = Candidate(effect_named("spring"), (), 50.0, 0.001, 7.0, (), 0.1, 0.08, gained, None, rows)
     assert is_confirmed(candidate)
     assert not is_confirmed(replace(candidate, impossible="it would be -2, allowed 0 to 1"))
-
-
-@pytest.mark.parametrize(("second", "best"), [(212.0, 0), (248.0, 1)])
-def test_a_shape_that_cannot_be_gives_way_to_one_that_can_where_that_is_not_surely_worse(second, best):
-    column = np.sin(np.arange(50.0))
-    evidence = [
-        Evidence(Block("backlash", column[:, None], 0, 15, shape), score, score, 0.001, column)
-        for shape, score in [((0.0053,), 253.0), ((0.0032,), second)]
-    ]
-    found = examination.best_shapes(evidence, lambda item: item.block.shape == (0.0032,))
-    assert found == [evidence[best]]

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import examination, families
-from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.diagnosis.note import Note
+from compensator.lab.diagnosis.physical import POSSIBLE, Impossible
 from compensator.lab.effects.catalogue import default_effects, effect_named
-from compensator.lab.model.fit import fit_effects, fit_model, widened
+from compensator.lab.model.fit import fit_model, widened
 from compensator.lab.model.gain import Gain
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.base import Base, Block
-from compensator.lab.screening.between_scanned import with_shapes_between
 from compensator.lab.screening.evidence import screen, screen_against_noise
 from compensator.lab.screening.gathering import gather, with_noise
 from tests.lab.diagnosis.test_diagnose import SHAKEN
@@ -32,54 +32,40 @@ def twisted():
     drawn = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2, stiffness_n_m_rad=stiffness)
     made = recordings(Joint(extra=twisting), trials=[*plans((0.0, 0.25))[::2], *SHAKEN[::2]], seed=4)
     fit = widened(fit_model(make_dataset(made, drawn, Processing()), default_effects(drawn)), "moving")
-    gathered = with_shapes_between(gather(fit, "moving"))
-    return fit, gathered, screen(gathered.bases, gathered.named, fit.dataset.block_index[gathered.rows])
+    gathered = with_noise(gather(fit, "moving"))
+    assert gathered.noise is not None
+    return fit, gathered, screen_against_noise(gathered.bases, gathered.named, gathered.noise)
+
+
+SURE = Gain(0.3, 0.2, 0.4)
 
 
 @pytest.mark.parametrize(
     ("gain", "found", "verdict"),
     [
-        (Gain(0.3, 0.2, 0.4), {}, "missing"),
+        (SURE, {}, "missing"),
         (Gain(-0.1, -0.2, -0.0), {}, "nothing"),
-        (Gain(0.3, 0.2, 0.4), {"shape": (50.0, 0.1)}, "nothing"),  # nor is one missing that is as stiff as told
-        (
-            Gain(0.3, 0.2, 0.4),
-            {"coefficients": np.array([0.3]), "at_bound": np.array([True])},
-            "nothing",
-        ),  # a part of it
+        (SURE, {"shape": (50.0, 0.1, 1.0)}, "nothing"),  # nor is one missing that is as stiff as told
+        (SURE, {"coefficients": np.array([0.3]), "at_bound": np.array([True])}, "nothing"),  # a part of it
     ],
 )
 def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypatch, twisted, gain, found, verdict):
     fit, gathered, named = twisted
-    monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=gain))
-    if found:
-        grown = fit_effects(fit, [*fit.names, "elasticity"])
+    monkeypatch.setattr(examination, "held_out_gain", lambda *_: gain)
+    fitted = examination.fit_effects
+
+    def changed(fit, names, *sliding):
+        grown = fitted(fit, names, *sliding)
         terms = [replace(one, **found) if one.effect.name == "elasticity" else one for one in grown.terms]
-        monkeypatch.setattr(families, "fit_effects", lambda *_: replace(grown, terms=terms))
-    answer = answer_of(fit, gathered, named, None)
-    assert answer.candidates[0].effect.name == "elasticity"
-    assert answer.verdict == verdict
-    assert (answer.explained is not None) == (verdict == "missing")
+        return replace(grown, terms=terms)
 
-
-@pytest.mark.parametrize(("low", "verdict"), [(0.2, "unknown-effect"), (-0.1, "nothing")])
-def test_what_shows_near_reversals_for_sure_and_cannot_be_its_formula_is_none_of_the_catalogue(
-    monkeypatch, twisted, low, verdict
-):
-    """As a base that rocks looks like a spring beyond the gear, with another load than the joint's."""
-    fit, gathered, named = twisted
-    impossible = "it would be 0.2, allowed 0.3 to 3"
-    monkeypatch.setattr(
-        families,
-        "examine",
-        lambda *given: [
-            replace(one, gain=Gain(0.3, low, 0.4), impossible=impossible) for one in examination.examine(*given)
-        ],
-    )
-    monkeypatch.setattr(families, "is_within_bounds", lambda *_: False)
+    monkeypatch.setattr(examination, "fit_effects", changed)
     answer = answer_of(fit, gathered, named, None)
-    assert (answer.verdict, answer.remains) == (verdict, verdict == "unknown-effect")
-    assert (f"joint elasticity, cannot be it: {impossible}" in answer.sentence) == answer.remains
+    elasticity = next(one for one in answer.candidates if one.effect.name == "elasticity")
+    if verdict == "missing":
+        assert answer.candidates[0] is elasticity
+        assert answer.explained is elasticity.explained
+    assert is_confirmed(elasticity) == (verdict == "missing")
 
 
 def test_in_steady_sliding_what_cannot_be_its_formula_is_left_to_free_curves(monkeypatch):
@@ -91,7 +77,6 @@ def test_in_steady_sliding_what_cannot_be_its_formula_is_left_to_free_curves(mon
     monkeypatch.setattr(
         families, "examine", lambda *given: [replace(one, **sure) for one in examination.examine(*given)]
     )
-    monkeypatch.setattr(families, "is_within_bounds", lambda *_: False)
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
     answer = answer_of(fit, gathered, screen_against_noise(gathered.bases, blocks, gathered.noise), None)
     assert answer.verdict == "nothing"
@@ -103,7 +88,7 @@ def test_a_name_that_explains_the_smaller_part_and_leaves_more_than_noise_says_s
 ):
     fit, gathered, named = twisted
     sure = Gain(gain, 0.06, 0.6)
-    monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=sure))
+    monkeypatch.setattr(examination, "held_out_gain", lambda *_: sure)
     monkeypatch.setattr(families, "what_remains", lambda *_: [Note("recurs", "Something is left.")] if left else [])
     answer = answer_of(fit, gathered, named, None)
     assert answer.verdict == "missing"
@@ -115,7 +100,7 @@ def test_in_steady_sliding_a_name_must_hold_in_the_model_that_would_be_had(monke
     made = recordings(Joint(extra=lambda x: 0.02 * np.sin(3.0 * x.q)), seed=4)
     fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
     gathered = with_noise(gather(fit))
-    monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=gain))
+    monkeypatch.setattr(examination, "held_out_gain", lambda *_: gain)
     assert gathered.noise is not None
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
     answer = answer_of(fit, gathered, screen_against_noise(gathered.bases, blocks, gathered.noise), None)
@@ -127,45 +112,21 @@ def test_in_steady_sliding_a_name_must_hold_in_the_model_that_would_be_had(monke
     ("extra", "cannot_be", "verdict", "first"),
     [
         (lambda x: 0.02 * x.q, "spring", "missing", "cogging"),
-        (lambda x: 0.02 * np.sin(3.0 * x.q), "cogging", "nothing", "cogging"),  # what is next is but its shadow
+        (lambda x: 0.02 * np.sin(3.0 * x.q), "cogging", "nothing", "spring"),  # what is next is but its shadow
     ],
 )
 def test_what_does_not_hold_leaves_its_place_to_the_next(monkeypatch, extra, cannot_be, verdict, first):
     fit = fit_model(make_dataset(recordings(Joint(extra=extra), seed=4), FACTS, Processing()), default_effects(FACTS))
     gathered = with_noise(gather(fit))
-    monkeypatch.setattr(families, "why_impossible", lambda _fit, name: "it cannot be" if name == cannot_be else "")
+    cannot = Impossible("it cannot be", "unphysical size")
+    monkeypatch.setattr(examination, "why_impossible", lambda _, name: cannot if name == cannot_be else POSSIBLE)
     assert gathered.noise is not None
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
     answer = answer_of(fit, gathered, screen_against_noise(gathered.bases, blocks, gathered.noise), None)
     assert (answer.verdict, answer.candidates[0].effect.name) == (verdict, first)
 
 
-def test_a_gain_that_is_not_sure_gives_no_name_where_what_is_left_comes_in_bursts(monkeypatch):
-    """Strong evidence does without a sure gain where the noise is alike everywhere."""
-    fit = fit_model(make_dataset(recordings(SPRUNG, seed=4), FACTS, Processing()), default_effects(FACTS))
-    gathered = with_noise(gather(fit))
-    assert gathered.noise is not None
-    blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
-    named = screen_against_noise(gathered.bases, blocks, gathered.noise)
-    unsure = Gain(0.3, -0.1, 0.4)
-    monkeypatch.setattr(families, "as_in_the_ladder", lambda candidate, *_: replace(candidate, gain=unsure))
-    assert answer_of(fit, gathered, named, None).verdict == "missing"
-    monkeypatch.setattr(families, "large_bursts", lambda _: object())
-    answer = answer_of(fit, gathered, named, None)
-    assert answer.verdict == "nothing"
-    assert "in bursts" in answer.candidates[0].refused
-
-
 SPRUNG = Joint(extra=lambda x: 0.05 * x.q)
-
-
-def test_what_a_shape_of_the_model_has_taken_is_looked_for_with_all_shapes_anew(monkeypatch):
-    """With shapes that are held, its gain may be next to nothing, as that of drag beside a Stribeck curve of it."""
-    fit = fit_model(make_dataset(recordings(SPRUNG, seed=5), FACTS, Processing(8.0)), default_effects(FACTS))
-    monkeypatch.setattr(examination, "with_effect", lambda held, *_: held)
-    found = diagnose(fit)
-    assert (found.verdict, found.candidates[0].effect.name) == ("missing", "spring"), found.sentence
-    assert found.candidates[0].gain.value > 0.1
 
 
 @pytest.mark.parametrize(
@@ -188,7 +149,7 @@ def test_what_explains_less_is_a_shadow_where_it_keeps_little_beside_what_explai
     gathered = SimpleNamespace(
         show_in=rows, noise=None, with_block=lambda block: SimpleNamespace(bases=[base.extended(block.columns)])
     )
-    family = families._Family(None, gathered, None, shapes, [])
+    family = families._Family(gathered, None, shapes, [])
     assert [one.block.name for one in shapes] == ["spring", "cogging"]
-    assert not family._is_shadow(shapes[0])
-    assert family._is_shadow(shapes[1]) == is_shadow
+    assert family._shadow_of(shapes[0]) == ""
+    assert family._shadow_of(shapes[1]) == ("spring" if is_shadow else "")

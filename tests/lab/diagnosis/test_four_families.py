@@ -16,8 +16,15 @@ NOTHING = Answer("nothing", "", 1.0, [], None, [])
 
 def named(name: str, evidence: float = 100.0) -> Answer:
     """An answer with a name, as far as other families look at it."""
-    candidate: Any = SimpleNamespace(effect=effect_named(name))
-    return Answer("missing", "", 0.001, [candidate], None, [], explained=model_of(name), evidence=evidence)
+    said = SimpleNamespace(noncentrality=evidence)
+    candidate: Any = SimpleNamespace(effect=effect_named(name), explained=model_of(name), evidence=said)
+    return Answer("missing", "", 0.001, [candidate], None, [])
+
+
+def unseen(name: str) -> Answer:
+    """One whose effect does not show in motion."""
+    candidate: Any = SimpleNamespace(effect=effect_named(name), explained=None, evidence=None)
+    return Answer("missing", "", 0.001, [candidate], None, [])
 
 
 def model_of(name: str) -> Any:
@@ -28,7 +35,7 @@ BACKLASH, COGGING, DWELL = map(named, ("backlash", "cogging", "dwell_strengtheni
 ENCODER, DELAY = named("encoder_eccentricity", 90.0), named("measurement_delay", 90.0)
 LATER = named("effort_filter", 200.0)
 CURVE = replace(NOTHING, verdict="unknown-effect", driver="time")
-UNSEEN = replace(named("rate_dependent_breakaway"), explained=None)  # in motion
+UNSEEN = unseen("rate_dependent_breakaway")
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,6 @@ import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
-from compensator.lab.left_over.bursts import bursts_of, is_rattle
 from compensator.lab.left_over.remainder import Remainder, remainder_of
 from compensator.lab.left_over.swinging import swing_of
 from compensator.lab.model.fit import fit_model
@@ -66,30 +65,6 @@ def test_less_than_friction_repeats_is_not_told():
     assert found.denser > 2.0
     assert found.share < 0.01
     assert not found.is_more_than_noise
-
-
-@pytest.mark.parametrize(("course", "rattles"), [((1.0, -1.0), True), ((1.0,), False)])
-def test_a_burst_that_is_quicker_than_the_motion_is_teeth_that_bounce(course, rattles):
-    fit = fitted()
-    rows, residual = fit.training, fit.residual[fit.training].copy()
-    wild = np.flatnonzero(fit.dataset.block_index[rows] == 1)
-    residual[wild] = 30.0 * residual.std() * np.resize(course, len(wild))
-    found = bursts_of(fit.dataset, residual, np.ones(len(residual)), rows)
-    assert found.stretches == 1
-    assert is_rattle(found, fit.dataset, residual, rows) == rattles
-
-
-@pytest.mark.parametrize(("frequency_hz", "told"), [(0.6, True), (6.0, False)])
-def test_teeth_that_bounce_are_not_told_as_what_comes_in_bursts(frequency_hz, told):
-    trials = iter(range(100))
-
-    def burst(x):
-        here = (x.time_s > 2.0) & (x.time_s < 4.0) & (next(trials) % 2 == 1)
-        return 0.05 * here * np.sin(2.0 * np.pi * frequency_hz * x.time_s)
-
-    found = diagnose(fitted(burst))
-    assert ("of the effort: 4 of 38 stretches" in found.sentence) == told
-    assert found.remains == told
 
 
 def test_a_few_wild_rows_do_not_make_it_more_than_noise():

@@ -216,7 +216,8 @@ def test_where_nothing_is_sure_and_starts_alone_speak_for_an_effect_ramps_are_as
         return replace(found, verdict="nothing", classes=[(steady.effect.name,)], candidates=list(candidates))
 
     assert shows_from_rest(unsure(steady, *from_rest))
-    assert not shows_from_rest(unsure(replace(steady, score=best.score + 1.0), *from_rest))
+    most = max(one.score for one in from_rest)
+    assert not shows_from_rest(unsure(replace(steady, score=most + 1.0), *from_rest))
     assert not shows_from_rest(unsure(steady, replace(best, impossible="it would be negative")))
     assert not shows_from_rest(replace(unsure(steady, *from_rest), verdict="missing"))
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from compensator.lab.left_over.bursts import bursts_of
 from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.evidence import screen, screen_against_noise
 from compensator.lab.screening.noise import Noise, spectral_density
@@ -19,7 +18,7 @@ STROKE = 30  # rows between two stops
 
 
 def dataset(velocity: list[np.ndarray] | None = None) -> SimpleNamespace:
-    """As much of a dataset as noise and bursts look at; velocity of each trial."""
+    """As much of a dataset as noise looks at; velocity of each trial."""
     time_s = PERIOD_S * np.arange(ROWS)
     velocity = [speed()] * TRIALS if velocity is None else velocity
     return SimpleNamespace(
@@ -131,9 +130,10 @@ def test_the_chance_of_a_name_is_its_own_not_that_of_what_is_surest():
     effort = noise + 0.5 * blocks[2].columns[:, 0] + 0.12 * blocks[7].columns[:, 0]
     found = screen_against_noise([Base.of(NOTHING, effort)], blocks, learnt(noise))
     own = {item.block.name: item.p_value for item in found.evidence}
-    assert found.chance_of("c2") == found.p_value <= 0.001
-    assert own["c7"] < found.chance_of("c7")  # one of ten: any of them might have reached it
-    assert found.p_value < found.chance_of("c7") < 10.5 * own["c7"]
+    assert found.chance is not None
+    assert found.chance(own["c2"]) == found.p_value <= 0.001
+    assert own["c7"] < found.chance(own["c7"])  # one of ten: any of them might have reached it
+    assert found.p_value < found.chance(own["c7"]) < 10.5 * own["c7"]
 
 
 def test_slow_rows_have_noise_of_a_colour_of_their_own():
@@ -224,26 +224,3 @@ def test_what_three_stretches_hold_is_found_where_flips_cannot():
     cleared = base.extended(held[:, None]).residual
     assert screen([base], [block], dataset().block_index).p_value > 0.01
     assert screen_against_noise([base], [block], learnt(cleared)).p_value <= 0.001
-
-
-def test_bursts_are_stretches_that_scatter_more_than_the_others():
-    residual, weights = coloured(np.random.default_rng(5)), np.ones(len(ALL))
-    assert not bursts_of(dataset(), residual, weights, ALL).are_there
-    residual[ROWS : ROWS + 40] *= 12.0
-    found = bursts_of(dataset(), residual, weights, ALL)
-    assert (found.are_there, found.stretches, found.trials) == (True, 1, (1,))
-    assert found.largest > 4.0
-    burst = residual[ROWS : ROWS + 40]
-    assert found.of_effort == pytest.approx(np.sqrt(burst @ burst / len(ALL)) / EFFORT, rel=0.01)
-    residual[ROWS + 7] = 1e3
-    assert bursts_of(dataset(), residual, weights, ALL).of_effort == pytest.approx(found.of_effort, rel=0.5)
-
-
-def test_a_stretch_whose_effort_the_model_does_not_determine_is_no_burst():
-    """As of a voltage while no current flows, which may be anything up to what the power stage loses."""
-    residual, weights, told = coloured(np.random.default_rng(5)), np.ones(len(ALL)), dataset()
-    residual[ROWS : ROWS + 40] *= 12.0
-    told.steadiness[ROWS : ROWS + 40] = 0.4
-    found = bursts_of(told, residual, weights, ALL)
-    assert found.of == bursts_of(dataset(), residual, weights, ALL).of - 1
-    assert not found.are_there
