@@ -18,7 +18,7 @@ from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.noise import Noise, strength
 
 SCREENINGS = 5  # of one diagnosis: steady effects, free curves, effects with memory, breakaway, the measuring chain
-STRONG, VERY_STRONG = 6.0, 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
+VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 
 
 @dataclass(frozen=True)
