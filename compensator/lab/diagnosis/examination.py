@@ -12,7 +12,7 @@ from compensator.lab.diagnosis.physical import POSSIBLE, why_impossible
 from compensator.lab.diagnosis.pictures import picture_of
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.effects.effect import MotionRows
-from compensator.lab.model.fit import fit_effects, fit_sliding
+from compensator.lab.model.fit import fit_effects, fit_model, fit_sliding
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut
@@ -44,8 +44,7 @@ def examine(fit: Fit, gathered: Candidates, screened: list[Evidence]) -> list[Ca
     """
     before = _held_out(fit, gathered.show_in)
     sliding = None if gathered.show_in == "sliding" else fit_sliding(fit.dataset, fit.names, fit.training, fit.shapes)
-    names = progress.each([item.block.name for item in screened])
-    fits = {name: fit_effects(fit, [*fit.names, name], sliding) for name in names}
+    fits = {item.block.name: _fitted(fit, item, sliding) for item in progress.each(screened)}
     evidence = _as_fitted(gathered, screened, fits)
     afters = [_held_out(fits[item.block.name], gathered.show_in) for item in evidence]
     blocks = [block for block in gathered.named if block.name in fits]
@@ -77,6 +76,14 @@ def examine(fit: Fit, gathered: Candidates, screened: list[Evidence]) -> list[Ca
             )
         )
     return sorted(found, key=lambda one: not is_confirmed(one))  # stable: by score
+
+
+def _fitted(fit: Fit, item: Evidence, sliding: Fit | None) -> Fit:
+    """The model with one more effect, all shapes found anew; as they are where the evidence does not pay for it."""
+    names = [*fit.names, item.block.name]
+    if item.score > 0.0:
+        return fit_effects(fit, names, sliding)
+    return fit_model(fit.dataset, names, fit.training, {**fit.shapes, item.block.name: item.block.shape}, sliding)
 
 
 def _as_fitted(gathered: Candidates, screened: list[Evidence], fits: Mapping[str, Fit]) -> list[Evidence]:

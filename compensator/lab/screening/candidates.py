@@ -104,11 +104,18 @@ class Candidates:
         return Base.of(self.noise.as_measured(base.basis), self.noise.as_measured(base.residual[:, None])[:, 0])
 
 
-def noise_of(gathered: Candidates, left: Candidates) -> Noise:
-    """The noise of the candidates' rows, from what is left of them once more is in the model."""
+def noise_of(gathered: Candidates, left: Candidates, stops: bool = True) -> Noise:
+    """The noise of the candidates' rows, from what is left of them once more is in the model.
+
+    Args:
+        gathered: the candidates.
+        left: the same, beside what is taken off.
+        stops: what lasts from stop to stop is told apart, which takes as long again.
+    """
     before = float(gathered.bases[0].residual @ gathered.bases[0].residual)
     base = left.bases[0]
-    return Noise.learnt(gathered.fit.dataset, gathered.rows, (base.basis, base.residual), before, _strokes_of(gathered))
+    strokes = _strokes_of(gathered) if stops else None
+    return Noise.learnt(gathered.fit.dataset, gathered.rows, (base.basis, base.residual), before, strokes)
 
 
 def _strokes_of(gathered: Candidates) -> StopToStop | None:

@@ -121,9 +121,8 @@ def with_noise(gathered: Candidates) -> Candidates:
     to whoever asks what the joint lacks. A block is taken off only where it pays against the noise as it is known so
     far, with its colour: held against white noise, slow blocks seem to pay wherever noise is slow.
     """
-    noise = noise_of(gathered, gathered)
     joint = [block for block in gathered.named if block.name not in chain_effects()]
     block = most_likely(gathered.bases, [*joint, *gathered.curves.blocks])
-    if block is not None and score_of(gathered.bases, block, noise) > 0.0:
-        noise = noise_of(gathered, gathered.with_block(block))
-    return gathered.evened(noise)
+    so_far = None if block is None else noise_of(gathered, gathered, stops=False)
+    pays = block is not None and score_of(gathered.bases, block, so_far) > 0.0
+    return gathered.evened(noise_of(gathered, gathered.with_block(block) if pays and block is not None else gathered))

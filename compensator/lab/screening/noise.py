@@ -23,6 +23,7 @@ from compensator.lab.rows.dataset import BLOCK_S, FEWEST_ROWS, Dataset
 from compensator.lab.screening.stops import StopToStop
 
 ComplexArray = NDArray[np.complex128]
+Spectra = list[ComplexArray]  # of columns, by kind of row
 
 SPEEDS = 3  # kinds of rows, slow to fast, as many of each
 STEADIEST = 0.5  # share of the noise, at any frequency, that is left to what does not last a stroke: both look alike
@@ -57,7 +58,7 @@ class _Place:
         rows = [(int(speed), np.flatnonzero(self.speed == speed)) for speed in np.unique(self.speed)]
         return [(speed, inside, self.grid[inside]) for speed, inside in rows]
 
-    def spectra(self, values: FloatArray) -> list[ComplexArray]:
+    def spectra(self, values: FloatArray) -> Spectra:
         """Of columns (n, k), where rows are of each kind and 0 elsewhere; (length // 2 + 1, k) each."""
         return [np.fft.rfft(_filled(grid, values[inside], self.length), axis=0) for _, inside, grid in self.kinds]
 
@@ -110,12 +111,14 @@ class Noise:
         stretches = len(np.unique(dataset.block_index[rows]))
         outweighed = before > 2.0 * float(residual @ residual)
         noise = cls(tuple(found), _tapered(free * products, pairs), max(stretches - 1, 1), outweighed)
-        noise = noise._given_back(products, pairs, lambda one: one.taken(basis))
+        spectra = [place.spectra(basis[place.rows]) for place in found]
+        noise = noise._given_back(products, pairs, lambda one: one.taken(basis, spectra))
         if strokes is None:
             return noise
+        alone = [_of_strokes(strokes, place) for place in found]
         cleared = strokes.scaled(residual[:, None], np.zeros_like(strokes.power))[:, 0]
         products, _ = _products(cleared, found, longest)
-        other = noise._given_back(products, pairs, lambda one: one.taken(basis) + one.taken_by(strokes))
+        other = noise._given_back(products, pairs, lambda one: one.taken(basis, spectra) + one.taken_by(alone))
         variance = strokes.variance(basis, residual, other.covariance)
         if variance == 0.0:
             return noise
@@ -168,38 +171,38 @@ class Noise:
             noise = replace(noise, autocovariances=_tapered(products + taken(noise), pairs))
         return noise
 
-    def taken(self, basis: FloatArray) -> FloatArray:
+    def taken(self, basis: FloatArray, spectra: list[Spectra]) -> FloatArray:
         """What a fit of an orthonormal basis (n, b) of rows as they were measured takes from noise's products by lag.
 
         A residual is e - BB'e, so that of its covariance BA' + AB' is missing, A = CB - BB'CB / 2 (the correction of
         restricted likelihood, by moments: Patterson, Thompson 1971). A fit takes most where its columns vary as slowly
         as the noise does. Shape (SPEEDS, lags).
+
+        Args:
+            basis: that was fitted.
+            spectra: of its rows in each place.
         """
-        each = zip(self.places, self._gains, strict=True)
-        spread = np.concatenate([_spread(place, gains, basis[place.rows]) for place, gains in each])
+        each = list(zip(self.places, self._gains, spectra, strict=True))
+        spread = np.concatenate([_spread(place, gains, own) for place, gains, own in each])
         other = spread - 0.5 * basis @ (basis.T @ spread)
-        products = [self._crossed(place, basis[place.rows], other[place.rows]) for place in self.places]
+        products = [self._crossed(place, own, other[place.rows]) for place, _, own in each]
         found: FloatArray = np.sum(products, axis=0)
         return found
 
-    def taken_by(self, strokes: StopToStop) -> FloatArray:
-        """The same of a fit of each stroke's share of static friction; shape (SPEEDS, lags)."""
+    def taken_by(self, strokes: list[tuple[FloatArray, Spectra]]) -> FloatArray:
+        """The same of a fit of each stroke's share of static friction (`_of_strokes`); shape (SPEEDS, lags)."""
         products = np.zeros((SPEEDS, self.autocovariances.shape[1]))
-        for place, gains in zip(self.places, self._gains, strict=True):
-            there, own = np.unique(strokes.index[place.rows], return_inverse=True)
-            basis = np.where(own[:, None] == np.arange(len(there)), strokes.share[place.rows][:, None], 0.0)
-            size = np.linalg.norm(basis, axis=0)
-            basis = basis / np.where(size > 0.0, size, 1.0)
-            spread = _spread(place, gains, basis)
-            products += self._crossed(place, basis, spread - 0.5 * basis @ (basis.T @ spread))
+        for place, gains, (basis, spectra) in zip(self.places, self._gains, strokes, strict=True):
+            spread = _spread(place, gains, spectra)
+            products += self._crossed(place, spectra, spread - 0.5 * basis @ (basis.T @ spread))
         return products
 
-    def _crossed(self, place: _Place, one: FloatArray, other: FloatArray) -> FloatArray:
-        """Sums of products by lag of two of one trial's columns (n, k) each, both ways, by kind; (SPEEDS, lags)."""
+    def _crossed(self, place: _Place, spectra: Spectra, other: FloatArray) -> FloatArray:
+        """Sums of products by lag of one trial's columns, by their spectra, and others (n, k), both ways, by kind."""
         length, longest = place.length, self.autocovariances.shape[1]
         lags = min(longest, length // 2)
         products = np.zeros((SPEEDS, longest))
-        for (speed, _, _), a, b in zip(place.kinds, place.spectra(one), place.spectra(other), strict=True):
+        for (speed, _, _), a, b in zip(place.kinds, spectra, place.spectra(other), strict=True):
             both = np.sum(a.real * b.real + a.imag * b.imag, axis=1)
             products[speed, :lags] = 2.0 * np.fft.irfft(both, length)[:lags]
         return products
@@ -235,6 +238,15 @@ class Noise:
             return (1.0 + float(np.any(reached, axis=0).sum())) / (1.0 + DRAWS)
 
         return chance
+
+
+def _of_strokes(strokes: StopToStop, place: _Place) -> tuple[FloatArray, Spectra]:
+    """The share of static friction in each stroke of a place, of unit norm, a column each; and their spectra."""
+    there, own = np.unique(strokes.index[place.rows], return_inverse=True)
+    basis = np.where(own[:, None] == np.arange(len(there)), strokes.share[place.rows][:, None], 0.0)
+    size = np.linalg.norm(basis, axis=0)
+    basis = basis / np.where(size > 0.0, size, 1.0)
+    return basis, place.spectra(basis)
 
 
 def strength(share: FloatArray, covariance: FloatArray) -> float:
@@ -318,16 +330,16 @@ def _less(whole: FloatArray, part: FloatArray) -> FloatArray:
     return found
 
 
-def _spread(place: _Place, gains: list[FloatArray], values: FloatArray) -> FloatArray:
-    """The covariance of one trial's rows, but for what lasts a stroke, times values (n, k)."""
-    found = np.zeros_like(values)
-    passed = _passed(gains, place.spectra(values))
+def _spread(place: _Place, gains: list[FloatArray], spectra: Spectra) -> FloatArray:
+    """The covariance of one trial's rows, but for what lasts a stroke, times columns, by their spectra; (n, k)."""
+    passed = _passed(gains, spectra)
+    found = np.zeros((len(place.grid), passed.shape[1]))
     for gain, (_, inside, grid) in zip(gains, place.kinds, strict=True):
         found[inside] = np.fft.irfft(gain * passed, place.length, axis=0)[grid]
     return found
 
 
-def _passed(gains: list[FloatArray], spectra: list[ComplexArray]) -> ComplexArray:
+def _passed(gains: list[FloatArray], spectra: Spectra) -> ComplexArray:
     """What noise of each kind's colour makes of them, together."""
     passed = np.zeros_like(spectra[0])
     for gain, spectrum in zip(gains, spectra, strict=True):
