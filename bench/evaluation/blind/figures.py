@@ -126,7 +126,7 @@ def _named_by_other_laws(answered: Sequence[Result]) -> Figure:
     """Friction by laws that the base model does not have may be flagged; a name for it is wrong."""
     what = "named though nothing is hidden, friction by laws outside the base model"
     among = [one for one in answered if one.family == "other-laws"]
-    return _share(what, 0.02, among, lambda one: _answer(one).verdict == "missing", at_most=True)
+    return _share(what, 0.02, among, lambda one: bool(_answer(one).first), at_most=True)
 
 
 def _outside(answered: Sequence[Result]) -> list[Figure]:

@@ -10,6 +10,7 @@ from bench.evaluation.blind.result import LabAnswer, Result, Standing
 from bench.evaluation.blind.settling import settle
 from bench.evaluation.challenge.names import accepted
 from bench.evaluation.challenge.owner import rig_of
+from compensator.lab.diagnosis.confirmation import nearest_one
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.search import search
 from compensator.lab.effects.catalogue import effect_named, withheld
@@ -21,18 +22,24 @@ from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.gathering import gather
 
+LIKELY = "likely"
 SHOWN = 3  # effects of a ranking that a reader looks at
 
 
 def ask_lab(fit: Fit, several: bool) -> LabAnswer:
     """Diagnose; where several effects may be missing, search: forward, swap, backward, as `study search` does.
 
+    What is said to be likely counts as a name that was given, right or wrong.
+
     Args:
         fit: of the base model.
         several: whether to go on after the first name.
     """
     first = last = diagnose(fit)
+    likely = nearest_one(first.candidates) if first.verdict == "nothing" and not first.too_short else None
     classes = first.classes[:1] if first.verdict == "missing" else []
+    if likely is not None:
+        classes = [(likely.effect.name, *likely.rivals)]
     named = list(classes)
     if several:
         found = search(fit, first=first)
@@ -40,7 +47,7 @@ def ask_lab(fit: Fit, several: bool) -> LabAnswer:
     elif classes:
         fit = fit_effects(fit, [*fit.names, classes[0][0]])
     return LabAnswer(
-        verdict=first.verdict,
+        verdict=first.verdict if likely is None else LIKELY,
         first=classes[0] if classes else (),
         named=tuple(named),
         unknown=last.remains,

@@ -32,7 +32,7 @@ class LabAnswer:
     """What the lab says.
 
     Attributes:
-        verdict: of the first diagnosis.
+        verdict: of the first diagnosis; "likely" where it names nothing and says that an effect is likely.
         first: the class that it names; empty where it names none.
         named: the class that is named first; where several are searched for, those that are in the model at the end.
         unknown: the last step says that none of the catalogue is it, or that something remains.
