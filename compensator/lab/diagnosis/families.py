@@ -89,6 +89,9 @@ class _Family:
         chance = among_all(self.named.chance(candidate.p_value))
         if chance > SIGNIFICANT:
             return LUCK_AMONG_ALL
+        found = next(item for item in self.shapes if item.block.name == candidate.effect.name)
+        if candidate.evidence.noncentrality < FORMULA_SHARE * found.noncentrality:
+            return "as it can be, it explains little of what a scan of it does"
         if shadow_of := self._shadow_of(candidate.evidence):
             return f"explains little beside {shadow_of}, which cannot be it"
         others = [one for one in self.examined if one is not candidate]

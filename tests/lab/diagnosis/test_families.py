@@ -68,6 +68,17 @@ def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypa
     assert is_confirmed(elasticity) == (verdict == "missing")
 
 
+@pytest.mark.parametrize(("share", "verdict"), [(1.0, "missing"), (0.1, "nothing")])
+def test_a_name_explains_most_of_what_a_scan_of_it_does(monkeypatch, twisted, share, verdict):
+    """Freely scaled, a scanned shape may explain much that the effect cannot, within its bounds."""
+    fit, gathered, named = twisted
+    whole = examination._as_fitted
+    less = lambda one: replace(one, noncentrality=share * one.noncentrality)  # noqa: E731
+    monkeypatch.setattr(examination, "_as_fitted", lambda *given: [less(one) for one in whole(*given)])
+    monkeypatch.setattr(families, "NEARLY_ALL", 0.0)
+    assert answer_of(fit, gathered, named, None).verdict == verdict
+
+
 def test_in_steady_sliding_what_cannot_be_its_formula_is_left_to_free_curves(monkeypatch):
     """As a filter of the measuring chain that would have to be a small part of the effort."""
     fit = fit_model(make_dataset(recordings(SPRUNG, seed=4), FACTS, Processing()), default_effects(FACTS))
