@@ -6,7 +6,7 @@ from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.model.fitted import Fit
 
-EXAMINED = 6  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
+EXAMINED = 5  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
 
 
 @dataclass(frozen=True)
