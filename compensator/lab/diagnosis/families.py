@@ -90,7 +90,8 @@ class _Family:
         if chance > SIGNIFICANT:
             return LUCK_AMONG_ALL
         found = next(item for item in self.shapes if item.block.name == candidate.effect.name)
-        if candidate.evidence.noncentrality < FORMULA_SHARE * found.noncentrality:
+        near_reversals = self.gathered.show_in != "sliding"
+        if near_reversals and candidate.evidence.noncentrality < FORMULA_SHARE * found.noncentrality:
             return "as it can be, it explains little of what a scan of it does"
         if shadow_of := self._shadow_of(candidate.evidence):
             return f"explains little beside {shadow_of}, which cannot be it"
