@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.model.fitted import Fit
+from compensator.lab.screening.candidates import Candidates
 
 EXAMINED = 5  # candidates that are refitted and drawn, of those whose evidence pays for their parameters
 
@@ -15,6 +16,7 @@ class Answer:
 
     Attributes:
         remains: more than noise is left that nothing named here explains.
+        gathered: what the model may be missing, as the family was judged; None of starts from rest.
         Others as in `Diagnosis`.
     """
 
@@ -25,6 +27,7 @@ class Answer:
     driver: str | None
     notes: list[Note]
     remains: bool = False
+    gathered: Candidates | None = None
 
     @property
     def explained(self) -> Fit | None:

@@ -33,7 +33,7 @@ from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.evidence import (
     Evidence,
     among_all,
-    inflation_of,
+    independent_rows,
     kept_evidence,
     least_p_value,
     screen_events,
@@ -153,7 +153,7 @@ def _over_one_model(base: BreakawayFit, bases: list[Base], evidence: list[Eviden
     inside = base.rows.training
     lag = base.weight[inside] * lag_column(base.rows)[inside, 0]
     left = [float(one.residual @ one.residual) for one in bases]
-    rows = len(lag) / max(inflation_of(one.residual) for one in bases)
+    rows = min(independent_rows(one.residual) for one in bases)
     gained = rows * float(np.log(max(left[WITHOUT_LAG], TINY) / max(left[WITH_LAG], TINY))) - float(np.log(rows))
     found = []
     for item in evidence:

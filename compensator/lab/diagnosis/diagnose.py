@@ -29,7 +29,7 @@ from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.evidence import least_p_value, screen
-from compensator.lab.screening.gathering import gather
+from compensator.lab.screening.gathering import gather, with_noise
 
 
 @progress.stages(STAGES)
@@ -91,9 +91,9 @@ def diagnose(fit: Fit) -> Diagnosis:
 def best_named(fit: Fit, show_in: MotionRows) -> str | None:
     """The effect of one family that the rows speak for most, by score alone; None where none can be judged."""
     rows = fit.dataset.choice_for([effect for effect in catalogue().values() if effect.rows == show_in])
-    gathered = with_found_order(gather(widened(fit, rows), show_in))
+    gathered = with_noise(with_found_order(gather(widened(fit, rows), show_in)))
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
-    screening = screen(gathered.bases, blocks, fit.dataset.block_index[gathered.rows])
+    screening = screen(gathered, blocks)
     return screening.evidence[0].block.name if screening.evidence else None
 
 

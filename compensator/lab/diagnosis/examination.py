@@ -19,7 +19,7 @@ from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Evidence, kept_evidence, new_directions, screen_against_noise
+from compensator.lab.screening.evidence import Evidence, kept_evidence, new_directions, screen
 
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
@@ -48,7 +48,7 @@ def examine(fit: Fit, gathered: Candidates, screened: list[Evidence]) -> list[Ca
     evidence = _as_fitted(gathered, screened, fits)
     afters = [_held_out(fits[item.block.name], gathered.show_in) for item in evidence]
     blocks = [block for block in gathered.named if block.name in fits]
-    given = [kept_evidence(gathered.with_block(item.block).bases, blocks, gathered.noise) for item in evidence]
+    given = [kept_evidence(gathered.with_block(item.block).bases, blocks) for item in evidence]
     spans = _spans(gathered)
     impossible = [why_impossible(fits[item.block.name], item.block.name) for item in evidence]
     possible = [item for item, why in zip(evidence, impossible, strict=True) if why == POSSIBLE]
@@ -88,14 +88,13 @@ def _fitted(fit: Fit, item: Evidence, sliding: Fit | None) -> Fit:
 
 def _as_fitted(gathered: Candidates, screened: list[Evidence], fits: Mapping[str, Fit]) -> list[Evidence]:
     """Evidence for effects as they are in their models, best score first; as screened where that adds nothing."""
-    assert gathered.noise is not None
     blocks = []
     for item in screened:
         name = item.block.name
         shape = fits[name].shapes[name]
         columns = gathered.fit.dataset.unchecked_columns(effect_named(name), [shape])[0]
         blocks.append(replace(item.block, columns=gathered.tested(columns), shape=shape))
-    found = {one.block.name: one for one in screen_against_noise(gathered.bases, blocks, gathered.noise).evidence}
+    found = {one.block.name: one for one in screen(gathered, blocks).evidence}
     return sorted((found.get(item.block.name, item) for item in screened), key=lambda one: -one.score)
 
 

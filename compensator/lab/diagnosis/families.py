@@ -98,7 +98,7 @@ class _Family:
         others = [one for one in self.examined if one is not candidate]
         notes = what_remains(candidate.explained, self.gathered.show_in, candidate.effect.name)
         sentence = missing_in_words(candidate, chance) + (partly_in_words(candidate) if notes else "")
-        return Answer("missing", sentence, chance, [candidate, *others], None, notes, remains=bool(notes))
+        return Answer("missing", sentence, chance, [candidate, *others], None, notes, bool(notes), self.gathered)
 
     def _shadow_of(self, one: Evidence) -> str:
         """What explains more, though it cannot be the effect, and explains what this one does; empty without.
@@ -112,7 +112,7 @@ class _Family:
         if share >= (FORMULA_SHARE if self.gathered.show_in == "sliding" else NEARLY_ALL):
             return ""
         beside = self.gathered.with_block(most.block).bases
-        little = share < FORMULA_SHARE or explains(kept_evidence(beside, [one.block], self.gathered.noise), one)
+        little = share < FORMULA_SHARE or explains(kept_evidence(beside, [one.block]), one)
         return most.block.name if little else ""
 
     def nothing(self, generic: Screening | None) -> Answer:

@@ -7,6 +7,8 @@ from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.few_rows import few_reversals
 from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
+from compensator.lab.diagnosis.diagnosis import Candidate
+from compensator.lab.diagnosis.examination import explains
 from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.diagnosis.unfollowed import with_curve
 from compensator.lab.effects.catalogue import effect_named
@@ -17,8 +19,9 @@ from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import predicts_better
 from compensator.lab.model.validation import held_out
+from compensator.lab.screening.base import Block
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Screening, screen, screen_against_noise
+from compensator.lab.screening.evidence import Screening, kept_evidence, screen
 from compensator.lab.screening.gathering import gather, with_noise
 
 # stages of a diagnosis, as whoever waits for it is told of them
@@ -70,17 +73,34 @@ class FourFamilies:
     def _goes_before(self, one: Answer, named: Fit, first: Answer) -> bool:
         """Whether a name goes before another answer: before a curve, unless that predicts other trials better for sure.
 
-        Before another name, where it does so itself, near reversals too unless both are judged in steady sliding; of a
-        name from starts from rest no row in motion tells. A delay lowers many errors a little: what goes by the rate of
-        the effort needs more evidence, too.
+        Before another name, which predicts other trials worse, near reversals too unless both are judged in steady
+        sliding: where that is its shadow, or, of the joint itself, has less evidence.
         """
         rows: MotionRows = "sliding" if one is self.chain and first is self.steady else "moving"
         if first.verdict == "missing":
-            late = one.candidates[0].effect.driver == "effort_rate"
-            enough = first is not self.rest and (not late or _evidence(one) > _evidence(first))
-            return enough and first.explained is not None and _predicts_better(named, first.explained, rows)
+            if first.explained is None or not _predicts_better(named, first.explained, rows):
+                return False
+            more = one is not self.chain and _evidence(one) > _evidence(first)
+            return first is not self.rest and (more or _is_shadow(first, one.candidates[0], named))
         curve = with_curve(self.gathered.fit, first.driver)
         return curve is None or not _predicts_better(curve, named, rows)
+
+
+def _evidence(answer: Answer) -> float:
+    """Noncentrality of what is named; 0 of what starts from rest alone name."""
+    evidence = answer.candidates[0].evidence
+    return 0.0 if evidence is None else evidence.noncentrality
+
+
+def _is_shadow(first: Answer, other: Candidate, named: Fit) -> bool:
+    """Whether a name loses its evidence once another effect is in the model, as fitted there; none of starts does."""
+    evidence, gathered = first.candidates[0].evidence, first.gathered
+    if evidence is None or gathered is None:
+        return False
+    shape = named.shapes.get(other.effect.name, ())
+    columns = gathered.fit.dataset.unchecked_columns(other.effect, [shape])[0]
+    beside = gathered.with_block(Block(other.effect.name, gathered.tested(columns), 0, 1, shape))
+    return explains(kept_evidence(beside.bases, [evidence.block]), evidence)
 
 
 def judged(fit: Fit) -> FourFamilies:
@@ -97,15 +117,13 @@ def judged(fit: Fit) -> FourFamilies:
         raise UnusableDataError(
             "no effect of the catalogue can be judged on these trials; record " + "; ".join(gathered.left_out.values())
         )
-    assert gathered.noise is not None
     progress.enter(SCREENING)
-    stretch = fit.dataset.block_index[gathered.rows]
-    generic = screen(gathered.bases, gathered.curves.blocks, stretch, noise=gathered.noise)
-    sliding = screen_against_noise(gathered.bases, physical, gathered.noise)
+    generic = screen(gathered, gathered.curves.blocks)
+    sliding = screen(gathered, physical)
     progress.enter(STEADY)
     steady = answer_of(fit, gathered, sliding, generic)
     progress.enter(CHAIN)
-    chain = answer_of(fit, gathered, screen_against_noise(gathered.bases, pipeline, gathered.noise), None)
+    chain = answer_of(fit, gathered, screen(gathered, pipeline), None)
     progress.enter(MEMORY)
     memory, not_judged = _memory_of(fit)
     progress.enter(REST)
@@ -122,15 +140,7 @@ def _memory_of(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
         return None, too_few
     wide = widened(fit, "moving" if dataset.rows == "sliding" else dataset.rows)
     gathered = with_noise(gather(wide, "moving"))
-    assert gathered.noise is not None
-    screening = screen_against_noise(gathered.bases, gathered.named, gathered.noise)
-    return answer_of(wide, gathered, screening, None), gathered.left_out
-
-
-def _evidence(answer: Answer) -> float:
-    """Noncentrality of what is named; 0 of what starts from rest alone name."""
-    evidence = answer.candidates[0].evidence
-    return 0.0 if evidence is None else evidence.noncentrality
+    return answer_of(wide, gathered, screen(gathered, gathered.named), None), gathered.left_out
 
 
 def _predicts_better(one: Fit, other: Fit, rows: MotionRows) -> bool:

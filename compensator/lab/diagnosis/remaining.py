@@ -13,7 +13,7 @@ from compensator.lab.model.fitted import Fit
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Screening, screen
-from compensator.lab.screening.gathering import gather_curves
+from compensator.lab.screening.gathering import gather_curves, with_noise
 
 
 def without_a_name(gathered: Candidates, generic: Screening) -> str | None:
@@ -39,7 +39,8 @@ def what_remains(fit: Fit, show_in: MotionRows, name: str) -> list[Note]:
     left = left_over(grown)
     if not left.is_more_than_noise:
         return []
-    rest = screen(grown.bases, grown.curves.blocks, grown.fit.dataset.block_index[grown.rows])
+    white = with_noise(grown)
+    rest = screen(white, white.curves.blocks)
     if rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
         variable, way = way_of(rest.evidence[0].block.name)
         return [_structure_remains(name, DRIVERS[variable].title, way)]

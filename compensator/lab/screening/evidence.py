@@ -9,15 +9,16 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.special import chdtrc, erfc
+from scipy.special import chdtrc, erfc, fdtrc, fdtri
 
 from compensator.lab.chance import LEAST_STATED, SIGN_FLIPS
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.screening.base import Base, Block
-from compensator.lab.screening.noise import Noise, strength
+from compensator.lab.screening.candidates import Candidates
 
 SCREENINGS = 5  # of one diagnosis: steady effects, free curves, effects with memory, breakaway, the measuring chain
+DRAWS = 9999
 VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
 
 
@@ -28,7 +29,7 @@ class Evidence:
     Attributes:
         block: the candidate.
         score: log-likelihood gain in units of 2 ln L, less the price of its parameters and shapes; > 0 speaks for it.
-        noncentrality: the gain itself, over the noise's power and its autocorrelation.
+        noncentrality: the gain itself.
         p_value: of this block alone.
         direction: the block's own contribution after projection, unit norm, shape (n,).
     """
@@ -47,8 +48,7 @@ class Screening:
     Attributes:
         evidence: of all blocks.
         p_value: the chance that luck alone brings the own p-value of any block screened down to the least of them.
-        chance: the same of another p-value than the least; None where p-values of blocks are not of one measure, as
-            those by flips of few stretches are not.
+        chance: the same of another p-value than the least; None of starts from rest, whose flips are few.
     """
 
     evidence: list[Evidence]
@@ -56,69 +56,63 @@ class Screening:
     chance: Callable[[float], float] | None = None
 
 
-def screen(
-    bases: Sequence[Base], blocks: Sequence[Block], stretch: IntArray, seed: int = 0, noise: Noise | None = None
-) -> Screening:
-    """Judge every block by flips of signs.
-
-    The joint null is had by flipping the signs of whole stretches of the score (wild bootstrap): shape scanning and
-    the number of candidates are inside the maximum, so that no further correction is due.
-
-    Args:
-        bases: what blocks are judged on top of.
-        blocks: candidates.
-        stretch: independent stretch of each row, shape (n,).
-        seed: of the flips.
-        noise: of the rows, for scores to be held against those of `screen_against_noise`.
-    """
-    labels, signs = _flipped(stretch, seed)
-    evidence, lowest = [], np.ones(len(signs))
-    inflation = max(inflation_of(base.residual) for base in bases)
-    for block in blocks:
-        base = bases[block.base]
-        directions = new_directions(base, block)
-        if not directions.shape[1]:
-            continue
-        p_values = _robust_p(_sums(base, directions, labels), signs)
-        lowest = np.minimum(lowest, p_values)
-        gain = _gain_by(noise, base, directions, inflation)
-        score = gain - _price(block, directions, inflation)
-        evidence.append(Evidence(block, score, gain, float(p_values[0]), _contribution(base, directions)))
-    p_value = float(np.mean(lowest <= lowest[0] * (1.0 + 1e-9)))
-    return Screening(sorted(evidence, key=lambda item: -item.score), p_value)
-
-
-def screen_against_noise(bases: Sequence[Base], blocks: Sequence[Block], noise: Noise) -> Screening:
-    """Judge every block against noise that is known.
+def screen(gathered: Candidates, blocks: Sequence[Block]) -> Screening:
+    """Judge every block on whitened rows, against noise that is known.
 
     Where a few stretches hold all of an effect, as those at the highest speed do of drag, their flips can never say
-    how sure it is; the noise of all rows can. The null is Gaussian, with the noise's own autocovariance.
+    how sure it is; the noise of all rows can. The null is Gaussian.
 
     Args:
-        bases: what blocks are judged on top of.
-        blocks: candidates.
-        noise: that a complete model would leave.
+        gathered: with its noise.
+        blocks: candidates, of its own.
     """
+    assert gathered.noise is not None
+    bases, known_from = gathered.bases, gathered.noise.known_from
     found = [(block, bases[block.base], new_directions(bases[block.base], block)) for block in blocks]
     found = [(block, base, directions) for block, base, directions in found if directions.shape[1]]
     if not found:
         return Screening([], 1.0)
-    ends = np.cumsum([0, *(directions.shape[1] for _, _, directions in found)])
-    places = [slice(int(a), int(b)) for a, b in pairwise(ends)]
-    covariance = noise.covariance(np.concatenate([directions for _, _, directions in found], axis=1))
-    inflation = max(inflation_of(base.residual) for base in bases)
     evidence = []
-    for (block, base, directions), own in zip(found, places, strict=True):
+    for block, base, directions in found:
+        rows, rank = directions.shape
         share = directions.T @ base.residual
-        size = strength(share, covariance[own, own])
-        known = _compressed(size, len(base.residual) / inflation)
-        gain = _likelihood(base, share, inflation) if noise.outweighed else known
-        score = gain - _price(block, directions, inflation)
-        direction = _contribution(base, directions)
-        evidence.append(Evidence(block, score, gain, noise.chance(size, len(share)), direction))
+        gain = _likelihood(base, share, rows)
+        p_value = float(fdtrc(rank, known_from, float(share @ share) / rank))
+        evidence.append(
+            Evidence(block, gain - _price(block, rank, rows), gain, p_value, _contribution(base, directions))
+        )
+    chance = _joint_chances([directions for _, _, directions in found], known_from)
     least = min(item.p_value for item in evidence)
-    chance = noise.joint_chances(covariance, places)
     return Screening(sorted(evidence, key=lambda item: -item.score), chance(least), chance)
+
+
+def _joint_chances(blocks: Sequence[FloatArray], known_from: int) -> Callable[[float], float]:
+    """How likely white noise alone brings any of the blocks' own chances down to a given one.
+
+    Args:
+        blocks: directions of each, orthonormal, shape (n, rank).
+        known_from: how well the noise is known.
+    """
+    together = np.concatenate(blocks, axis=1)
+    powers, axes = np.linalg.eigh(together.T @ together)
+    root = axes * np.sqrt(np.maximum(powers, 0.0))
+    generator = np.random.default_rng(0)
+    drawn = root @ generator.standard_normal((DRAWS, len(powers))).T
+    known = generator.chisquare(known_from, DRAWS) / known_from
+    strongest: dict[int, FloatArray] = {}  # of each draw, by rank
+    ends = np.cumsum([0, *(own.shape[1] for own in blocks)])
+    for first, last in pairwise(ends):
+        rank = int(last - first)
+        strongest[rank] = np.maximum(strongest.get(rank, 0.0), np.sum(drawn[first:last] ** 2, axis=0) / known)
+
+    def chance(own: float) -> float:
+        reached = [
+            found >= rank * float(fdtri(rank, known_from, 1.0 - own)) * (1.0 - 1e-9)
+            for rank, found in strongest.items()
+        ]
+        return (1.0 + float(np.any(reached, axis=0).sum())) / (1.0 + DRAWS)
+
+    return chance
 
 
 def screen_events(
@@ -134,20 +128,20 @@ def screen_events(
     """
     labels, signs = _flipped(unit, seed)
     evidence, highest = [], np.full(len(signs), -np.inf)
-    inflation = max(inflation_of(base.residual) for base in bases)
+    independent = min(independent_rows(base.residual) for base in bases)
     for block in blocks:
         base = bases[block.base]
         directions = new_directions(base, block)
-        count, rank = directions.shape
+        rank = directions.shape[1]
         if rank == 0:
             continue
         if block.base == 0:
             shares = signs @ _sums(base, directions, labels)
-            gains = np.array([_likelihood(base, share, inflation) for share in shares])
+            gains = np.array([_likelihood(base, share, independent) for share in shares])
         else:
-            gains = _gains_in_place(bases[model], base, directions, signs[:, labels]) / inflation
+            gains = independent * _gains_in_place(bases[model], base, directions, signs[:, labels])
         replaced = max(bases[model].basis.shape[1] - base.basis.shape[1], 0)
-        scores = gains - (rank - replaced) * np.log(count / inflation) - 2.0 * np.log(block.scanned)
+        scores = gains - _price(block, rank - replaced, independent)
         highest = np.maximum(highest, scores)
         gain = max(float(gains[0]), 0.0)
         evidence.append(Evidence(block, float(scores[0]), gain, _rank(scores), _contribution(base, directions)))
@@ -165,7 +159,7 @@ def _gains_in_place(whole: Base, part: Base, directions: FloatArray, signs: Floa
     left = part.residual - whole.residual + flipped - (flipped @ part.basis) @ part.basis.T
     after = np.sum(left**2, axis=1) - np.sum((left @ directions) ** 2, axis=1)
     tiny = np.finfo(float).tiny
-    gains: FloatArray = len(whole.residual) * np.log(np.maximum(before, tiny) / np.maximum(after, tiny))
+    gains: FloatArray = np.log(np.maximum(before, tiny) / np.maximum(after, tiny))
     return gains
 
 
@@ -184,71 +178,31 @@ def least_p_value(stretches: int) -> float:
     return among_all(max(0.5 ** (stretches - 1), LEAST_STATED))
 
 
-def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block], noise: Noise | None = None) -> dict[str, float]:
+def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block]) -> dict[str, float]:
     """The greatest noncentrality of each name's blocks on top of the bases; 0 where nothing new is left."""
-    inflation = max(inflation_of(base.residual) for base in bases)
-    each = [(block.name, bases[block.base], new_directions(bases[block.base], block)) for block in blocks]
-    known = None if noise is None or noise.outweighed else _covariances(noise, [own for _, _, own in each])
     kept: dict[str, float] = {}
-    for index, (name, base, directions) in enumerate(each):
-        gain = _gain(base, directions, inflation, None if known is None else known[index])
-        kept[name] = max(kept.get(name, 0.0), gain)
+    for block in blocks:
+        base = bases[block.base]
+        gain = _likelihood(base, new_directions(base, block).T @ base.residual, len(base.residual))
+        kept[block.name] = max(kept.get(block.name, 0.0), gain)
     return kept
 
 
-def score_of(bases: Sequence[Base], block: Block, noise: Noise | None = None) -> float:
-    """The score of one block on top of its base; that of no gain where nothing new is left."""
-    inflation = max(inflation_of(base.residual) for base in bases)
-    directions = new_directions(bases[block.base], block)
-    return _gain_by(noise, bases[block.base], directions, inflation) - _price(block, directions, inflation)
-
-
 def most_likely(bases: Sequence[Base], blocks: Sequence[Block]) -> Block | None:
-    """The block with the best score by likelihood alone; None where no score is above zero."""
-    inflation = max(inflation_of(base.residual) for base in bases)
+    """The block with the best score, of rows whose noise is not known yet; None where no score is above zero."""
+    independent = min(independent_rows(base.residual) for base in bases)
     best, highest = None, 0.0
     for block in blocks:
-        directions = new_directions(bases[block.base], block)
-        score = _gain(bases[block.base], directions, inflation, None) - _price(block, directions, inflation)
+        base = bases[block.base]
+        directions = new_directions(base, block)
+        gain = _likelihood(base, directions.T @ base.residual, independent)
+        score = gain - _price(block, directions.shape[1], independent)
         best, highest = (block, score) if score > highest else (best, highest)
     return best
 
 
-def _gain_by(noise: Noise | None, base: Base, directions: FloatArray, inflation: float) -> float:
-    """As `_gain`, against a noise where it is known, and tells formulas apart."""
-    none = noise is None or noise.outweighed or not directions.shape[1]
-    known = None if noise is None or none else noise.covariance(directions)
-    return _gain(base, directions, inflation, known)
-
-
-def _gain(base: Base, directions: FloatArray, inflation: float, covariance: FloatArray | None) -> float:
-    """2 ln L gained by directions (n, rank).
-
-    Against what noise puts into them (rank, rank); None: by the residual's lag-one correlation.
-    """
-    share = directions.T @ base.residual
-    if covariance is None or not len(share):
-        return _likelihood(base, share, inflation)
-    return _compressed(strength(share, covariance), len(base.residual) / inflation)
-
-
-def _covariances(noise: Noise, each: Sequence[FloatArray]) -> list[FloatArray]:
-    """Of what noise puts into directions (n, rank) of many blocks: one pass through the trials for all of them."""
-    ends = np.cumsum([0, *(directions.shape[1] for directions in each)])
-    if not ends[-1]:
-        return [np.zeros((0, 0))] * len(each)
-    whole = noise.covariance(np.concatenate(each, axis=1))
-    return [whole[a:b, a:b] for a, b in pairwise(ends)]
-
-
-def _compressed(size: float, independent: float) -> float:
-    """2 ln L gained, where the noise is learnt, too: far beyond it, what else a block misses counts as noise."""
-    return float(independent * np.log1p(size / independent))
-
-
-def _price(block: Block, directions: FloatArray, inflation: float) -> float:
-    count, rank = directions.shape
-    return float(rank * np.log(count / inflation) + 2.0 * np.log(block.scanned))
+def _price(block: Block, rank: int, rows: float) -> float:
+    return float(rank * np.log(rows) + 2.0 * np.log(block.scanned))
 
 
 def _sums(base: Base, directions: FloatArray, labels: IntArray) -> FloatArray:
@@ -272,19 +226,11 @@ def new_directions(base: Base, block: Block) -> FloatArray:
     return orthonormal(columns[:, after > 1e-3 * np.where(before > 0, before, np.inf)])
 
 
-def _likelihood(base: Base, share: FloatArray, inflation: float) -> float:
-    """Gain of 2 ln L from explaining `share` (rank,) of the residual, per independent row."""
+def _likelihood(base: Base, share: FloatArray, rows: float) -> float:
+    """Gain of 2 ln L from explaining `share` (rank,) of the residual, of so many independent rows."""
     power = float(base.residual @ base.residual)
     explained = min(float(share @ share) / power, 1.0 - 1e-12) if power > 0.0 else 0.0
-    return float(-len(base.residual) * np.log1p(-explained) / inflation)
-
-
-def _robust_p(by_stretch: FloatArray, signs: FloatArray) -> FloatArray:
-    """P-value of the score for each row of signs, its covariance taken from the stretches themselves."""
-    covariance = by_stretch.T @ by_stretch
-    sums = signs @ by_stretch
-    statistic = np.einsum("fi,fi->f", sums, np.linalg.lstsq(covariance, sums.T, rcond=1e-10)[0].T)
-    return chance_beyond(statistic, by_stretch.shape[1])
+    return float(-rows * np.log1p(-explained))
 
 
 def chance_beyond(statistic: FloatArray, degrees: int) -> FloatArray:
@@ -293,6 +239,11 @@ def chance_beyond(statistic: FloatArray, degrees: int) -> FloatArray:
         tail: FloatArray = erfc(np.sqrt(0.5 * np.maximum(statistic, 0.0)))
         return tail
     return np.asarray(chdtrc(degrees, np.maximum(statistic, 0.0)))
+
+
+def independent_rows(residual: FloatArray) -> float:
+    """How many independent rows would tell as much, by the residual's lag-one correlation (AR(1))."""
+    return len(residual) / inflation_of(residual)
 
 
 def inflation_of(residual: FloatArray) -> float:

@@ -1,7 +1,9 @@
 """Collects every effect and driver spline that could be missing from a fitted model, as blocks to be screened."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -15,11 +17,13 @@ from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import bounded_influence, row_weights
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.screening.base import Base, Block
-from compensator.lab.screening.candidates import Candidates, Curves, noise_of
+from compensator.lab.screening.candidates import Candidates, Curves
 from compensator.lab.screening.discrepancy import model_columns
-from compensator.lab.screening.evidence import most_likely, score_of
+from compensator.lab.screening.evidence import most_likely, screen
 from compensator.lab.screening.generic import free_curves
+from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.nuisance import nuisance_columns
+from compensator.lab.screening.random_effects import RandomEffect
 
 
 def gather(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
@@ -115,14 +119,43 @@ class _Builder:
 
 
 def with_noise(gathered: Candidates) -> Candidates:
-    """The same candidates, evened by the noise of what is left once the likeliest block is in the model.
+    """The same candidates, whitened by the noise of what is left once the likeliest block is in the model.
 
     What is missing must not count as noise. Of the joint's blocks alone: what the measuring chain does badly is noise
-    to whoever asks what the joint lacks. A block is taken off only where it pays against the noise as it is known so
-    far, with its colour: held against white noise, slow blocks seem to pay wherever noise is slow.
+    to whoever asks what the joint lacks. A block is taken off only where it pays against noise of the residual's
+    colour: held against white noise, slow blocks seem to pay wherever noise is slow.
     """
     joint = [block for block in gathered.named if block.name not in chain_effects()]
     block = most_likely(gathered.bases, [*joint, *gathered.curves.blocks])
-    so_far = None if block is None else noise_of(gathered, gathered, stops=False)
-    pays = block is not None and score_of(gathered.bases, block, so_far) > 0.0
-    return gathered.evened(noise_of(gathered, gathered.with_block(block) if pays and block is not None else gathered))
+    left = gathered
+    if block is not None:
+        colour = _noise_of(gathered, [])
+        if _pays(gathered.whitened(colour), replace(block, columns=colour.whitened(block.columns))):
+            left = gathered.with_block(block)
+    return gathered.whitened(_noise_of(left, _random_effects(gathered)))
+
+
+def _noise_of(left: Candidates, random: Sequence[RandomEffect]) -> Noise:
+    """What is left of the candidates' rows."""
+    return Noise.learnt(left.fit.dataset, left.rows, left.bases[0], random)
+
+
+def _random_effects(gathered: Candidates) -> list[RandomEffect]:
+    """Each term of the model from trial to trial, and static friction from stop to stop, in the tested rows."""
+    fit, rows = gathered.fit, gathered.rows
+    dataset, trial = fit.dataset, fit.dataset.trial_index[rows]
+    stroke = np.concatenate([trial.motion.strokes.index[trial.picked] for trial in dataset.trials])[rows]
+    _, stroke = np.unique(np.stack([trial, stroke]), axis=1, return_inverse=True)
+    trial = np.unique(trial, return_inverse=True)[1]
+    ends = np.cumsum([0, *(len(term.coefficients) for term in fit.terms)])
+    shares = [fit.columns[rows, a:b] @ fit.coefficients[a:b] for a, b in pairwise(ends)]
+    shares = [share for share in shares if np.ptp(share) > 0.0] + [np.full(len(trial), fit.dry_friction)]
+    return [
+        *(RandomEffect(gathered.weights * share, trial) for share in shares),
+        RandomEffect(gathered.weights * fit.static_friction[rows], np.asarray(stroke, dtype=np.int64).ravel()),
+    ]
+
+
+def _pays(gathered: Candidates, block: Block) -> bool:
+    """Whether the evidence of whitened rows pays for a block's parameters and shapes."""
+    return any(item.score > 0.0 for item in screen(gathered, [block]).evidence)

@@ -268,15 +268,10 @@ def test_what_no_formula_describes_is_called_unknown(law, driver):
 
 def with_luck(monkeypatch, p_value):
     """A diagnosis of weight-dependent friction whose every screening says so small a p."""
-    for name in ("screen", "screen_against_noise"):
-        whole = getattr(four_families, name)
-        monkeypatch.setattr(
-            four_families,
-            name,
-            lambda *given, whole=whole, **named: replace(
-                whole(*given, **named), p_value=p_value, chance=lambda _: p_value
-            ),
-        )
+    whole = four_families.screen
+    monkeypatch.setattr(
+        four_families, "screen", lambda *given: replace(whole(*given), p_value=p_value, chance=lambda _: p_value)
+    )
     return diagnosis_of(recordings(Joint(extra=PLANTED["weight_friction"]), trials=plans((0.0, 0.25)), seed=3))
 
 

@@ -18,7 +18,7 @@ from compensator.lab.model.linear import orthonormal
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from compensator.lab.screening.base import Base, Block
-from compensator.lab.screening.evidence import screen, screen_against_noise
+from compensator.lab.screening.evidence import screen
 from compensator.lab.screening.gathering import gather, with_noise
 from tests.lab.diagnosis.test_diagnose import SHAKEN
 from tests.lab.far_side import ARM_KG_M2, twisting
@@ -33,8 +33,7 @@ def twisted():
     made = recordings(Joint(extra=twisting), trials=[*plans((0.0, 0.25))[::2], *SHAKEN[::2]], seed=4)
     fit = widened(fit_model(make_dataset(made, drawn, Processing()), default_effects(drawn)), "moving")
     gathered = with_noise(gather(fit, "moving"))
-    assert gathered.noise is not None
-    return fit, gathered, screen_against_noise(gathered.bases, gathered.named, gathered.noise)
+    return fit, gathered, screen(gathered, gathered.named)
 
 
 SURE = Gain(0.3, 0.2, 0.4)
@@ -83,13 +82,12 @@ def test_in_steady_sliding_what_cannot_be_its_formula_is_left_to_free_curves(mon
     """As a filter of the measuring chain that would have to be a small part of the effort."""
     fit = fit_model(make_dataset(recordings(SPRUNG, seed=4), FACTS, Processing()), default_effects(FACTS))
     gathered = with_noise(gather(fit))
-    assert gathered.noise is not None
     sure = {"gain": Gain(0.3, 0.2, 0.4), "impossible": "it cannot be"}
     monkeypatch.setattr(
         families, "examine", lambda *given: [replace(one, **sure) for one in examination.examine(*given)]
     )
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
-    answer = answer_of(fit, gathered, screen_against_noise(gathered.bases, blocks, gathered.noise), None)
+    answer = answer_of(fit, gathered, screen(gathered, blocks), None)
     assert answer.verdict == "nothing"
 
 
@@ -112,9 +110,8 @@ def test_in_steady_sliding_a_name_must_hold_in_the_model_that_would_be_had(monke
     fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
     gathered = with_noise(gather(fit))
     monkeypatch.setattr(examination, "held_out_gain", lambda *_: gain)
-    assert gathered.noise is not None
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
-    answer = answer_of(fit, gathered, screen_against_noise(gathered.bases, blocks, gathered.noise), None)
+    answer = answer_of(fit, gathered, screen(gathered, blocks), None)
     assert (answer.verdict, answer.candidates[0].effect.name) == (verdict, "cogging")
     assert (answer.explained is not None) == (verdict == "missing")
 
@@ -131,9 +128,8 @@ def test_what_does_not_hold_leaves_its_place_to_the_next(monkeypatch, extra, can
     gathered = with_noise(gather(fit))
     cannot = Impossible("it cannot be", "unphysical size")
     monkeypatch.setattr(examination, "why_impossible", lambda _, name: cannot if name == cannot_be else POSSIBLE)
-    assert gathered.noise is not None
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
-    answer = answer_of(fit, gathered, screen_against_noise(gathered.bases, blocks, gathered.noise), None)
+    answer = answer_of(fit, gathered, screen(gathered, blocks), None)
     assert (answer.verdict, answer.candidates[0].effect.name) == (verdict, first)
 
 
@@ -156,10 +152,13 @@ def test_what_explains_less_is_a_shadow_where_it_keeps_little_beside_what_explai
     base = Base(np.empty((600, 0)), 1.1 * most + (0.0 if alike else size) * own + noise)
     less = alike * most + np.sqrt(1.0 - alike**2) * own
     blocks = [Block("spring", most[:, None], 0, 1), Block("cogging", less[:, None], 0, 1)]
-    shapes = screen([base], blocks, np.arange(600) // 20).evidence
     gathered = SimpleNamespace(
-        show_in=rows, noise=None, with_block=lambda block: SimpleNamespace(bases=[base.extended(block.columns)])
+        show_in=rows,
+        bases=[base],
+        noise=SimpleNamespace(known_from=30),
+        with_block=lambda block: SimpleNamespace(bases=[base.extended(block.columns)]),
     )
+    shapes = screen(gathered, blocks).evidence
     family = families._Family(gathered, None, shapes, [])
     assert [one.block.name for one in shapes] == ["spring", "cogging"]
     assert family._shadow_of(shapes[0]) == ""
