@@ -2,9 +2,10 @@
 
 from typing import Literal
 
-from bench.config.drives.real import Bitrate, RealDriveSettings
+from bench.config.drives.real import RealDriveSettings
 from bench.config.quantities import quantity
 from bench.config.rig import Section
+from drivers.can_bus.settings import Bitrate
 
 VelocityUnit = Literal["rpm", "0.1 rpm", "0.01 rpm", "0.001 rpm", "counts/s", "rad/s", "deg/s"]
 
