@@ -1,6 +1,6 @@
 """What every real drive's settings share: signs and zero, and the joint that comes of them and the rig."""
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import model_validator
 
@@ -59,11 +59,6 @@ class RealDriveSettings(DriveSettings):
     side_channel: str = quantity(
         "", "", "Only of a simulated device: where its loads are hung, as host:port; left out: a person is asked"
     )
-
-
-def driver_values(settings: RealDriveSettings) -> dict[str, Any]:
-    """What the driver's own settings take: all but the kind, and what the joint's scale takes."""
-    return settings.model_dump(exclude=set(RealDriveSettings.model_fields))
 
 
 def joint_scale(settings: RealDriveSettings, rig: Rig) -> JointScale:

@@ -5,16 +5,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
-from bench.config.drives.real import driver_values, joint_scale
+from bench.config.drives.real import joint_scale
 from bench.config.drives.simulated_device import Simulate
 from bench.config.rig import Rig
-from bench.drives.canopen.settings import CanopenDriveSettings
+from bench.drives.canopen.settings import CanopenBus, CanopenDriveSettings
 from bench.errors import ConfigurationError
+from drivers.canopen.parameters import CanopenParameters
 from drivers.contract import Drive
 from drivers.follower import Follower
 
 if TYPE_CHECKING:  # imported when needed: a bench needs no library of another kind
-    from drivers.canopen import CanopenDrive, CanopenSettings
+    from drivers.canopen.drive import CanopenDrive
+    from drivers.canopen.settings import CanopenSettings
 
 
 _UNHURRIED = {"watchdog_s": 1.0, "answer_s": 0.6}
@@ -26,7 +28,7 @@ def make(settings: CanopenDriveSettings, rig: Rig) -> Drive:
     Raises:
         ConfigurationError: settings that contradict each other.
     """
-    from drivers.canopen import CanopenDrive
+    from drivers.canopen.drive import CanopenDrive
     from drivers.errors import DriveConfigurationError
 
     try:
@@ -51,12 +53,12 @@ def follow(settings: CanopenDriveSettings, rig: Rig, _link: Path, _period_s: flo
 
 
 def _driver_settings(settings: CanopenDriveSettings, rig: Rig) -> "CanopenSettings":
-    from drivers.canopen import BusSettings, CanopenSettings
-    from drivers.canopen.cia402.bits import BrakeBit, TorqueOffBit
+    from drivers.can_bus.settings import BusSettings
+    from drivers.canopen.cia402.bits import BrakeBit
     from drivers.canopen.cia402.homing import DriveHoming
+    from drivers.canopen.settings import CanopenSettings
 
-    values = driver_values(settings)
-    del values["tpdo_mapping"]
+    values = settings.model_dump(include=set(CanopenParameters.model_fields))
     if settings.brake.by == "output":
         values["brake"] = BrakeBit(settings.brake.output_bit, settings.brake.set_level)
     homing = settings.homing
@@ -64,9 +66,7 @@ def _driver_settings(settings: CanopenDriveSettings, rig: Rig) -> "CanopenSettin
         values["homing"] = DriveHoming(
             homing.drive_method, homing.speed_rad_s, homing.slow_speed_rad_s, homing.acceleration_rad_s2
         )
-    if values["torque_off"] is not None:
-        values["torque_off"] = TorqueOffBit(**values["torque_off"])
-    bus = BusSettings(**{name: values.pop(name) for name in BusSettings.__match_args__})
+    bus = BusSettings(**settings.model_dump(include=set(CanopenBus.model_fields)))
     return CanopenSettings(bus=bus, torque_constant_n_m_a=rig.motor.torque_constant_n_m_a, **values)
 
 
@@ -76,7 +76,7 @@ def share(drives: "Sequence[CanopenDrive]") -> None:
     Raises:
         ConfigurationError: two have one node ID, or their settings of the bus differ.
     """
-    from drivers.canopen import share_buses
+    from drivers.canopen.one_bus import share_buses
     from drivers.errors import DriveConfigurationError
 
     try:

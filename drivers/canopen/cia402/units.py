@@ -1,8 +1,10 @@
 """Units of CiA 402 objects: 0x60A8, 0x60A9 and 0x60AA (codes of CiA 303-2), 0x60C2. Pure."""
 
 from math import pi
+from typing import Literal, get_args
 
-VELOCITY_UNITS = ("rpm", "0.1 rpm", "0.01 rpm", "0.001 rpm", "counts/s", "rad/s", "deg/s")
+VelocityUnit = Literal["rpm", "0.1 rpm", "0.01 rpm", "0.001 rpm", "counts/s", "rad/s", "deg/s"]
+VELOCITY_UNITS: tuple[str, ...] = get_args(VelocityUnit)
 """Names of velocity units that the settings know."""
 
 _REVOLUTION, _INCREMENT, _RADIAN, _DEGREE = 0xB4, 0xB5, 0x10, 0x41

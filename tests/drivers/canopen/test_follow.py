@@ -10,7 +10,9 @@ from scipy.integrate import cumulative_trapezoid
 from bench.errors import ConfigurationError
 from bench.runs.follow import follower_of, record
 from drivers.can_bus.port import CanPort
-from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+from drivers.can_bus.settings import BusSettings
+from drivers.canopen.drive import CanopenDrive
+from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode
 from drivers.errors import DriveConfigurationError
 from sim_backend.devices.canopen.serve import CanOpenSettings, serve_canopen
