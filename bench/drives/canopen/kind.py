@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import joint_scale
-from bench.config.drives.simulated_device import Simulate
+from bench.config.drives.simulated_device import command_in
 from bench.config.rig import Rig
 from bench.drives.canopen.settings import CanopenBus, CanopenDriveSettings
 from bench.errors import ConfigurationError
@@ -85,18 +85,11 @@ def share(drives: "Sequence[CanopenDrive]") -> None:
         raise ConfigurationError(str(error)) from error
 
 
-def simulate() -> Simulate:
-    """The command that simulates one."""
-    from bench.drives.canopen.device import simulate
-
-    return simulate
-
-
 KIND = DriveKind(
     title="CiA 402 servo drive, CANopen",
     settings=CanopenDriveSettings,
     make=make,
-    simulate=simulate,
+    simulate=command_in("bench.drives.canopen.device"),
     follow=follow,
     share=share,
     conformance=(

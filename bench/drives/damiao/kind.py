@@ -8,7 +8,7 @@ from typing import Literal
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import RealDriveSettings, joint_scale
 from bench.config.drives.scanning import CanPlace, FoundDrive
-from bench.config.drives.simulated_device import Simulate
+from bench.config.drives.simulated_device import command_in
 from bench.config.rig import Rig
 from drivers.contract import Drive
 from drivers.damiao.settings import DamiaoSettings
@@ -38,13 +38,6 @@ def follow(settings: DamiaoDriveSettings, rig: Rig, _link: Path, _period_s: floa
     return follow(settings, joint_scale(settings, rig))
 
 
-def simulate() -> Simulate:
-    """The command that simulates one."""
-    from bench.drives.damiao.device import simulate
-
-    return simulate
-
-
 def scan(place: CanPlace) -> Iterator[FoundDrive]:
     """Ask each of the usual ids for its range of torques: the reading of a register."""
     from drivers.can_bus.port import CanPort
@@ -70,7 +63,7 @@ KIND = DriveKind(
     title="Damiao actuator, MIT protocol",
     settings=DamiaoDriveSettings,
     make=make,
-    simulate=simulate,
+    simulate=command_in("bench.drives.damiao.device"),
     follow=follow,
     scan_can=scan,
     conformance=(

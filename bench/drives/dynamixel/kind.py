@@ -7,7 +7,7 @@ from typing import Literal
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import RealDriveSettings, joint_scale
 from bench.config.drives.scanning import FoundDrive, SerialPlace
-from bench.config.drives.simulated_device import Simulate
+from bench.config.drives.simulated_device import command_in
 from bench.config.rig import Rig
 from drivers.contract import Drive
 from drivers.dynamixel.settings import DynamixelSettings
@@ -36,13 +36,6 @@ def follow(settings: DynamixelDriveSettings, rig: Rig, link: Path, period_s: flo
     return followed(settings, joint_scale(settings, rig), link, period_s)
 
 
-def simulate() -> Simulate:
-    """The command that simulates one."""
-    from bench.drives.dynamixel.device import simulate
-
-    return simulate
-
-
 def scan(place: SerialPlace) -> Iterator[FoundDrive]:
     """Ask everybody, at each baud rate."""
     from drivers.dynamixel.frames import PROTOCOL_2
@@ -62,7 +55,7 @@ KIND = DriveKind(
     title="Dynamixel X servo, protocol 2.0",
     settings=DynamixelDriveSettings,
     make=make,
-    simulate=simulate,
+    simulate=command_in("bench.drives.dynamixel.device"),
     scan_serial=scan,
     follow=follow,
     conformance=(

@@ -7,7 +7,7 @@ from typing import Literal
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import RealDriveSettings, joint_scale
 from bench.config.drives.scanning import FoundDrive, SerialPlace
-from bench.config.drives.simulated_device import Simulate
+from bench.config.drives.simulated_device import command_in
 from bench.config.rig import Rig
 from drivers.contract import Drive
 from drivers.feetech.settings import FeetechSettings
@@ -37,13 +37,6 @@ def follow(settings: FeetechDriveSettings, rig: Rig, link: Path, period_s: float
     return followed(settings, joint_scale(settings, rig), link, period_s)
 
 
-def simulate() -> Simulate:
-    """The command that simulates one."""
-    from bench.drives.feetech.device import simulate
-
-    return simulate
-
-
 def scan(place: SerialPlace) -> Iterator[FoundDrive]:
     """Ask one id after the other, at each baud rate: where all are asked, all answer at once."""
     from drivers.feetech.frames import SCS
@@ -61,7 +54,7 @@ KIND = DriveKind(
     title="Feetech STS servo, SCS protocol",
     settings=FeetechDriveSettings,
     make=make,
-    simulate=simulate,
+    simulate=command_in("bench.drives.feetech.device"),
     scan_serial=scan,
     follow=follow,
     conformance=(

@@ -4,7 +4,7 @@ from typing import Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import RealDriveSettings, joint_scale
-from bench.config.drives.simulated_device import Simulate
+from bench.config.drives.simulated_device import command_in
 from bench.config.rig import Rig
 from bench.errors import ConfigurationError
 from drivers.contract import Drive, Mode
@@ -37,18 +37,11 @@ def make(settings: ModbusDriveSettings, rig: Rig) -> Drive:
     return ModbusDrive(settings, register_map, joint_scale(settings, rig))
 
 
-def simulate() -> Simulate:
-    """The command that simulates one."""
-    from bench.drives.modbus.device import simulate
-
-    return simulate
-
-
 KIND = DriveKind(
     title="drive on Modbus RTU or TCP, by its register map",
     settings=ModbusDriveSettings,
     make=make,
-    simulate=simulate,
+    simulate=command_in("bench.drives.modbus.device"),
     conformance=(
         ConformanceBench(
             "modbus-rtu",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import RealDriveSettings, joint_scale
 from bench.config.drives.scanning import CanPlace, FoundDrive, SerialPlace
-from bench.config.drives.simulated_device import Simulate
+from bench.config.drives.simulated_device import command_in
 from bench.config.rig import Rig
 from bench.errors import ConfigurationError
 from drivers.contract import Drive
@@ -51,13 +51,6 @@ def follow(settings: MoteusDriveSettings, rig: Rig, _link: Path, _period_s: floa
     return follow(settings.bus, settings.servo_id, joint_scale(settings, rig))
 
 
-def simulate() -> Simulate:
-    """The command that simulates one."""
-    from bench.drives.moteus.device import simulate
-
-    return simulate
-
-
 def scan(place: SerialPlace) -> Iterator[FoundDrive]:
     """Ask each id for its mode, which moves nothing; with checksums, and without."""
     from drivers.moteus.line import MoteusLine
@@ -98,7 +91,7 @@ KIND = DriveKind(
     title="moteus controller, its registers over CAN-FD",
     settings=MoteusDriveSettings,
     make=make,
-    simulate=simulate,
+    simulate=command_in("bench.drives.moteus.device"),
     follow=follow,
     scan_serial=scan,
     scan_can=scan_can,

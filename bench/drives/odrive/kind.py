@@ -8,7 +8,7 @@ from typing import Literal
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import RealDriveSettings, joint_scale
 from bench.config.drives.scanning import CanPlace, FoundDrive
-from bench.config.drives.simulated_device import Simulate
+from bench.config.drives.simulated_device import command_in
 from bench.config.rig import Rig
 from drivers.contract import Drive
 from drivers.follower import Follower
@@ -37,13 +37,6 @@ def follow(settings: OdriveDriveSettings, rig: Rig, _link: Path, _period_s: floa
     return follow(settings, joint_scale(settings, rig))
 
 
-def simulate() -> Simulate:
-    """The command that simulates one."""
-    from bench.drives.odrive.device import simulate
-
-    return simulate
-
-
 def scan(place: CanPlace) -> Iterator[FoundDrive]:
     """Listen for heartbeats; nothing is sent. A node whose heartbeat is as long and as seldom looks the same."""
     from drivers.can_bus.port import CanPort
@@ -66,7 +59,7 @@ KIND = DriveKind(
     title="ODrive axis, CANSimple",
     settings=OdriveDriveSettings,
     make=make,
-    simulate=simulate,
+    simulate=command_in("bench.drives.odrive.device"),
     follow=follow,
     scan_can=scan,
     conformance=(

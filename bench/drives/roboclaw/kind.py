@@ -6,7 +6,7 @@ from typing import Literal, get_args
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.drives.real import RealDriveSettings, joint_scale
 from bench.config.drives.scanning import FoundDrive, SerialPlace
-from bench.config.drives.simulated_device import Simulate
+from bench.config.drives.simulated_device import command_in
 from bench.config.rig import Rig
 from drivers.contract import Drive
 from drivers.roboclaw.settings import BaudRate, RoboclawSettings
@@ -26,13 +26,6 @@ def make(settings: RoboclawDriveSettings, rig: Rig) -> Drive:
     from drivers.roboclaw.drive import RoboclawDrive
 
     return RoboclawDrive(settings, joint_scale(settings, rig))
-
-
-def simulate() -> Simulate:
-    """The command that simulates one."""
-    from bench.drives.roboclaw.device import simulate
-
-    return simulate
 
 
 def scan(place: SerialPlace) -> Iterator[FoundDrive]:
@@ -62,7 +55,7 @@ KIND = DriveKind(
     title="RoboClaw motor controller, packet serial",
     settings=RoboclawDriveSettings,
     make=make,
-    simulate=simulate,
+    simulate=command_in("bench.drives.roboclaw.device"),
     scan_serial=scan,
     conformance=(
         ConformanceBench(
