@@ -4,8 +4,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Protocol
 
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.contract import Mode
+from drivers.polled_drive import Identity
 
 
 class Actuator(Protocol):

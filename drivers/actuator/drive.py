@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Generic
 
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.actuator.session import ActuatorSession, ActuatorT
 from drivers.contract import Command, Description, Drive, Mode, Sample, Watchdog
 from drivers.errors import DriveConnectionError
 from drivers.host_time import CycleTime, Lateness
 from drivers.joint import JointScale
-from drivers.polled_drive import PolledDrive
+from drivers.polled_drive import Identity, PolledDrive
 
 _IN_COUNTS = frozenset({"position_rad", "velocity_rad_s"})
 ExchangeAll = Callable[[Sequence[tuple[ActuatorT, Mode, float]]], list[Reading]]
@@ -110,11 +110,7 @@ def _describe(
     steps = {} if actuator is None else actuator.steps
     return Description(
         device=family.device,
-        vendor=identity.vendor,
-        product=identity.product,
-        firmware=identity.firmware,
-        serial=identity.serial,
-        simulated=identity.simulated,
+        **identity._asdict(),
         modes=family.modes if actuator is None else actuator.modes,
         measured=frozenset() if actuator is None else actuator.measured,
         resolution={name: step * (joint.count_rad if name in _IN_COUNTS else 1.0) for name, step in steps.items()},

@@ -5,7 +5,7 @@ from math import inf
 from struct import Struct
 from time import perf_counter
 
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.can_bus.port import CanPort, Heard
 from drivers.damiao import protocol
 from drivers.damiao.protocol import MODELS, Register, register_frame
@@ -14,6 +14,7 @@ from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveE
 from drivers.joint import JointScale
 from drivers.mit.actuator import ATTEMPTS, MitActuator
 from drivers.mit.frames import CLEAR_ERRORS, DISABLE, ENABLE, Frame, Ranges, command
+from drivers.polled_drive import Identity
 
 _NEAR = 1e-4  # of a range, relative
 SIMULATED_SOFTWARE = 0xFFFF_FFFF

@@ -8,13 +8,14 @@ from typing import Protocol
 
 from drivers.actuator.actuator import OnSharedBus
 from drivers.actuator.open_buses import check_alone
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.can_bus.port import CanPort, Heard
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, DriveConnectionError
 from drivers.host_time import host_was_away
 from drivers.joint import JointScale
 from drivers.mit.frames import Frame, Motion, Ranges
+from drivers.polled_drive import Identity
 
 ATTEMPTS = 2
 _MARGIN = 0.02  # of the range of positions, within which the next turn may be lost

@@ -5,13 +5,14 @@ from time import perf_counter
 
 from drivers.actuator.actuator import OnSharedBus
 from drivers.actuator.open_buses import check_alone
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveStateError, WatchdogError
 from drivers.joint import JointScale
 from drivers.moteus.frames import POSITION, Frames, fault_name, reading_of, registers, state, text_of
 from drivers.moteus.opening import Line
 from drivers.moteus.settings import MoteusSettings
+from drivers.polled_drive import Identity
 
 _BEGIN_S = 1.0  # longest wait until it drives
 _ANSWER_POLLS = 30  # of its console

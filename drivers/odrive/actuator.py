@@ -7,7 +7,7 @@ from time import perf_counter
 
 from drivers.actuator.actuator import OnSharedBus
 from drivers.actuator.open_buses import check_alone
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.can_bus.port import CanPort, prepare
 from drivers.contract import Mode
 from drivers.errors import DriveConnectionError, DriveStateError, WatchdogError
@@ -16,6 +16,7 @@ from drivers.joint import JointScale
 from drivers.odrive import protocol
 from drivers.odrive.protocol import Command, can_id, error_names
 from drivers.odrive.settings import OdriveSettings
+from drivers.polled_drive import Identity
 
 _QUICK = (Command.GET_ENCODER_ESTIMATES, Command.GET_IQ, Command.GET_ERROR)
 _SLOW = (Command.GET_BUS, Command.GET_TEMPERATURE)
@@ -219,16 +220,14 @@ def exchange_all(demands: Sequence[tuple[OdriveActuator, Mode, float]]) -> list[
     """
     bus, settings = demands[0][0].bus, demands[0][0]._settings
     asked_s = perf_counter()
-    for attempt in range(_ATTEMPTS):
+    for _ in range(_ATTEMPTS):
         before: dict[int, int] = {}
         for axis, mode, value in demands:
             before |= axis.tell(mode, value)
         missing = bus.wait_beyond(before, settings.answer_timeout_s)
         if not missing:
             return [axis.reading(asked_s) for axis, _, _ in demands]
-        if attempt + 1 == _ATTEMPTS:
-            raise no_answer(settings, missing, asked_s, _ATTEMPTS * settings.answer_timeout_s)
-    raise AssertionError
+    raise no_answer(settings, missing, asked_s, _ATTEMPTS * settings.answer_timeout_s)
 
 
 def no_answer(settings: OdriveSettings, missing: list[int], began_s: float, longest_s: float) -> DriveConnectionError:

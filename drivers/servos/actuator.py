@@ -3,13 +3,37 @@
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from time import perf_counter
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from drivers.actuator.actuator import OnSharedBus
 from drivers.actuator.reading import Reading
 from drivers.contract import Mode
 from drivers.servos.bus import ServoBus
 from drivers.servos.frames import Item
+
+
+class ServoSettings(Protocol):
+    """What the settings of every protocol have."""
+
+    @property
+    def port(self) -> str:
+        """Serial port."""
+
+    @property
+    def baud_rate(self) -> int:
+        """Of the line."""
+
+    @property
+    def servo_id(self) -> int:
+        """Of the servo."""
+
+    @property
+    def answer_timeout_s(self) -> float:
+        """Longest wait for one answer [s]."""
+
+    @property
+    def device(self) -> str:
+        """The name used in messages."""
 
 
 class ServoActuator(OnSharedBus):

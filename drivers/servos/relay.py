@@ -6,19 +6,22 @@ bus watchdog as well as a command does, and the silence of who commands has to s
 """
 
 import select
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from time import perf_counter
+from typing import TypeVar
 
 from drivers.actuator.reading import Reading, sample_of
 from drivers.contract import Sample, Status
 from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale
 from drivers.serial_port import SerialPort
+from drivers.servos.actuator import ServoSettings
 from drivers.servos.bus import ServoBus
 from drivers.servos.frames import Frames, Item
 from drivers.servos.offered_port import OfferedPort
 
+ModelT = TypeVar("ModelT")
 _QUIET_S = 0.002  # of the line, before a question of ours
 _OWED_S = 0.1  # longest wait for an answer to the other program: an adapter, or a busy host, may hold one back
 _ALIVE_S = 0.2  # who says nothing for longer counts as silent
@@ -28,11 +31,8 @@ class ServoRelay:
     """The line, opened.
 
     Args:
-        port: the real port.
-        baud_rate: of the line.
-        timeout_s: longest wait for one answer [s].
+        settings: who is looked at, and on which real port.
         frames: of the protocol.
-        servo_id: who is looked at.
         piece: what is read of it.
         link: name of the port that is offered.
         period_s: from one look to the next, at least [s].
@@ -41,15 +41,13 @@ class ServoRelay:
         DriveConnectionError: the real port is not there, or in use.
     """
 
-    def __init__(
-        self, port: str, baud_rate: int, timeout_s: float, frames: Frames, servo_id: int, piece: Item, link: Path,
-        period_s: float,
-    ) -> None:  # fmt: skip
+    def __init__(self, settings: ServoSettings, frames: Frames, piece: Item, link: Path, period_s: float) -> None:
+        servo_id, port = settings.servo_id, settings.port
         self.place = str(link)
         self._frames, self._servo_id, self._period_s = frames, servo_id, period_s
         self._question = frames.read(servo_id, piece.address, piece.size)
         self._piece_bytes, self._answer_bytes = piece.size, frames.status_bytes + piece.size
-        self._line = SerialPort(port, port, baud_rate, timeout_s)
+        self._line = SerialPort(port, port, settings.baud_rate, settings.answer_timeout_s)
         try:
             self._other = OfferedPort(link)
         except BaseException:
@@ -176,20 +174,27 @@ class ServoFollower:
         self._relay.close()
 
 
-def number_of(port: str, baud_rate: int, timeout_s: float, frames: Frames, servo_id: int, item: Item) -> int:
-    """Ask a servo for one number, before the other program is there.
+def asked_model(settings: ServoSettings, frames: Frames, item: Item, models: Mapping[int, ModelT]) -> ModelT:
+    """Ask a servo for its model, before the other program is there.
+
+    Args:
+        settings: which servo.
+        frames: of the protocol.
+        item: that tells the number of the model.
+        models: by their numbers.
 
     Raises:
         DriveConnectionError: the port is not there or in use, or nobody answers.
+        DriveConfigurationError: a model whose numbers nobody here knows the meaning of.
     """
-    bus = ServoBus(port, baud_rate, timeout_s, frames)
+    bus = ServoBus(settings.port, settings.baud_rate, settings.answer_timeout_s, frames)
     try:
         bus.begin()
-        return bus.read(servo_id, item)
+        number = bus.read(settings.servo_id, item)
     finally:
         bus.close()
-
-
-def unknown_model(device: str, number: int) -> DriveConfigurationError:
-    """A servo whose numbers nobody here knows the meaning of."""
-    return DriveConfigurationError(device, f"its model number is {number}, which is not known; check servo_id")
+    if number not in models:
+        raise DriveConfigurationError(
+            settings.device, f"its model number is {number}, which is not known; check servo_id"
+        )
+    return models[number]

@@ -28,18 +28,13 @@ from sim_backend.devices.canopen.state_machine import (
     command_of,
     is_quick_stop_code,
 )
-from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.faults.script import tripped
 from sim_backend.plant.parameters import PlantParameters
 
 _REMOTE, _LIMITED, _WARNING, _VOLTAGE = 1 << 9, 1 << 11, 1 << 7, 1 << 4
 _FOLLOWING_ERROR = 1 << 13
 _INTERLOCK = 1 << 3  # of 0x60FD: safe torque off is active
 _WARM_C = 85.0
-_CODES: dict[type[Trip], ErrorCode] = {
-    OverCurrent: ErrorCode.OVER_CURRENT,
-    SupplyLost: ErrorCode.UNDER_VOLTAGE,
-    OverTemperature: ErrorCode.OVER_TEMPERATURE,
-}
 
 
 class ServoDrive(Device):
@@ -229,7 +224,10 @@ class ServoDrive(Device):
     def _meet_faults(self) -> None:
         trip = self.axis.trip()
         if trip is not None:
-            self._fault(_CODES.get(type(trip), ErrorCode.GENERIC), at_once=True)
+            code = tripped(
+                trip, ErrorCode.OVER_TEMPERATURE, ErrorCode.OVER_CURRENT, ErrorCode.UNDER_VOLTAGE, ErrorCode.GENERIC
+            )
+            self._fault(ErrorCode(code), at_once=True)
         elif self.axis.torque_is_disabled():
             self._obey()
             self._machine.lose_torque()
