@@ -11,8 +11,9 @@ from drivers.damiao import protocol
 from drivers.damiao.protocol import MODELS, Register, register_frame
 from drivers.damiao.settings import DamiaoSettings
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError, WatchdogError
+from drivers.host_time import ATTEMPTS
 from drivers.joint import JointScale
-from drivers.mit.actuator import ATTEMPTS, MitActuator
+from drivers.mit.actuator import MitActuator
 from drivers.mit.frames import CLEAR_ERRORS, DISABLE, ENABLE, Frame, Ranges, command
 from drivers.polled_drive import Identity
 

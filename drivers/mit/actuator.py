@@ -12,12 +12,11 @@ from drivers.actuator.reading import Reading
 from drivers.can_bus.port import CanPort, Heard
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, DriveConnectionError
-from drivers.host_time import host_was_away
+from drivers.host_time import ATTEMPTS, no_answer
 from drivers.joint import JointScale
 from drivers.mit.frames import Frame, Motion, Ranges
 from drivers.polled_drive import Identity
 
-ATTEMPTS = 2
 _MARGIN = 0.02  # of the range of positions, within which the next turn may be lost
 NO_CURRENT = (
     "it tells its torque, and no current: where a current is shown, it is that over motor.torque_constant_n_m_a"
@@ -202,13 +201,8 @@ class MitActuator(OnSharedBus):
 
     def no_answer(self, what: str, began_s: float) -> DriveConnectionError:
         """An answer has not come."""
-        longest_s = ATTEMPTS * self.answer_timeout_s
-        away = host_was_away(perf_counter() - began_s, longest_s, self.answer_timeout_s)
-        return DriveConnectionError(
-            self.device,
-            f"{what}: found no answer within {self.answer_timeout_s:g} s, asked {ATTEMPTS} times at most; check the "
-            f"cable, the power, {self.addresses()} and the bit rate{away}",
-        )
+        check = f"{self.addresses()} and the bit rate"
+        return no_answer(self.device, f"{what}: found no answer", check, self.answer_timeout_s, began_s)
 
 
 def reading_of(
