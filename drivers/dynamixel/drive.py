@@ -13,7 +13,6 @@ from drivers.dynamixel.frames import PROTOCOL_2
 from drivers.dynamixel.models import MODELS, Model
 from drivers.dynamixel.settings import DynamixelSettings
 from drivers.joint import JointScale
-from drivers.servos.actuator import exchange_all
 from drivers.servos.bus import ServoBus
 from drivers.servos.frames import Item
 from drivers.servos.opening import check_counts, on_line
@@ -42,7 +41,6 @@ class DynamixelDrive(ActuatorDrive[DynamixelActuator]):
             family,
             joint,
             lambda: on_line(settings, PROTOCOL_2, lambda bus, leave: DynamixelActuator(bus, settings, joint, leave)),
-            exchange_all,
         )
 
 

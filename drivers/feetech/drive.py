@@ -10,7 +10,6 @@ from drivers.feetech.frames import SCS
 from drivers.feetech.memory import reading_of
 from drivers.feetech.settings import FeetechSettings
 from drivers.joint import JointScale
-from drivers.servos.actuator import exchange_all
 from drivers.servos.bus import ServoBus
 from drivers.servos.opening import check_counts, on_line
 from drivers.servos.relay import ServoFollower, ServoRelay, asked_model
@@ -30,7 +29,6 @@ class FeetechDrive(ActuatorDrive[FeetechActuator]):
             family,
             joint,
             lambda: on_line(settings, SCS, lambda bus, leave: FeetechActuator(bus, settings, joint, leave)),
-            exchange_all,
         )
 
 

@@ -6,7 +6,7 @@ from math import nan, pi
 from time import perf_counter
 from typing import Protocol
 
-from drivers.actuator.actuator import OnSharedBus
+from drivers.actuator.actuator import Actuator
 from drivers.actuator.open_buses import check_alone
 from drivers.actuator.reading import Reading
 from drivers.can_bus.port import CanPort, Heard
@@ -35,7 +35,7 @@ class MitSettings(Protocol):
         """Longest wait for one answer [s]."""
 
 
-class MitActuator(OnSharedBus):
+class MitActuator(Actuator):
     """What actuators of every vendor do alike; a kind says what its frames are.
 
     Args:
@@ -58,6 +58,7 @@ class MitActuator(OnSharedBus):
     bits = (16, 12, 12)
     temperature_step_c = 1.0
     identity: Identity
+    bus: CanPort
     ranges: Ranges
     enable: Frame
     disable: Frame
@@ -117,10 +118,27 @@ class MitActuator(OnSharedBus):
         """Disable it."""
         self.told(self.disable)
 
-    def exchange(self, mode: Mode, value: float) -> Reading:
-        """Send the torque, or the question that moves nothing, and take the answer."""
-        [reading] = exchange_all([(self, mode, value)])
-        return reading
+    @staticmethod
+    def exchange_all(demands: Sequence[tuple["MitActuator", Mode, float]]) -> list[Reading]:
+        """Send every torque, then wait for all answers.
+
+        Raises:
+            DriveConnectionError: one of them does not answer.
+            DriveConfigurationError: a torque is beyond the range of its frame; what was before it has been sent.
+        """
+        first = demands[0][0]
+        bus, asked_s = first.bus, perf_counter()
+        for _ in range(ATTEMPTS):
+            before = {one.answer_id: bus.number(one.answer_id) for one, _, _ in demands}
+            for actuator, mode, value in demands:
+                actuator.tell(mode, value)
+            missing = bus.wait_beyond(before, first.answer_timeout_s)
+            if not missing:
+                return [actuator.reading(asked_s) for actuator, _, _ in demands]
+            for actuator, _, _ in demands:
+                actuator.missed()
+        silent = next(actuator for actuator, _, _ in demands if actuator.answer_id in missing)
+        raise silent.no_answer("feedback", asked_s)
 
     def braking(self) -> tuple[Mode, float]:
         """A torque of 0 with damping: the whole torque at the highest speed."""
@@ -213,28 +231,6 @@ def reading_of(
         asked_s, found.position_rad * counts_rad, found.speed_rad_s * counts_rad, nan, nan, found.torque_n_m, nan,
         temperature_c, is_on, fault,
     )  # fmt: skip
-
-
-def exchange_all(demands: Sequence[tuple[MitActuator, Mode, float]]) -> list[Reading]:
-    """Send every torque, then wait for all answers.
-
-    Raises:
-        DriveConnectionError: one of them does not answer.
-        DriveConfigurationError: a torque is beyond the range of its frame; what was before it has been sent.
-    """
-    first = demands[0][0]
-    bus, asked_s = first.bus, perf_counter()
-    for _ in range(ATTEMPTS):
-        before = {one.answer_id: bus.number(one.answer_id) for one, _, _ in demands}
-        for actuator, mode, value in demands:
-            actuator.tell(mode, value)
-        missing = bus.wait_beyond(before, first.answer_timeout_s)
-        if not missing:
-            return [actuator.reading(asked_s) for actuator, _, _ in demands]
-        for actuator, _, _ in demands:
-            actuator.missed()
-    silent = next(actuator for actuator, _, _ in demands if actuator.answer_id in missing)
-    raise silent.no_answer("feedback", asked_s)
 
 
 def chosen_ranges(device: str, model: str, models: Mapping[str, Ranges], written: tuple[float, float, float]) -> Ranges:

@@ -5,7 +5,7 @@ from math import nan
 from struct import Struct
 from time import perf_counter
 
-from drivers.actuator.actuator import OnSharedBus
+from drivers.actuator.actuator import Actuator
 from drivers.actuator.open_buses import check_alone
 from drivers.actuator.reading import Reading
 from drivers.can_bus.port import CanPort, prepare
@@ -24,7 +24,7 @@ STATE_S = 1.0  # longest wait for a change of state, and for the heartbeat that 
 SIMULATED = 255  # "unreleased" of our own simulated device
 
 
-class OdriveActuator(OnSharedBus):
+class OdriveActuator(Actuator):
     """An axis, opened: idle, its errors seen.
 
     Args:
@@ -40,6 +40,7 @@ class OdriveActuator(OnSharedBus):
     modes = frozenset({Mode.TORQUE})
     measured = frozenset({"time_s", "position_rad", "velocity_rad_s", "current_a", "supply_v", "temperature_c"})
     notes: tuple[str, ...] = ()
+    bus: CanPort
 
     def __init__(self, port: CanPort, settings: OdriveSettings, joint: JointScale, leave: Callable[[], None]) -> None:
         self.bus = port
@@ -113,10 +114,23 @@ class OdriveActuator(OnSharedBus):
                     self._settings.device, "no heartbeat that says that it is idle; check cable, power and node_id"
                 )
 
-    def exchange(self, mode: Mode, value: float) -> Reading:
-        """Send the torque, ask for the rest, and wait for it."""
-        [reading] = exchange_all([(self, mode, value)])
-        return reading
+    @staticmethod
+    def exchange_all(demands: Sequence[tuple["OdriveActuator", Mode, float]]) -> list[Reading]:
+        """Send every torque and every question, then wait for all answers.
+
+        Raises:
+            DriveConnectionError: one of them does not answer.
+        """
+        bus, settings = demands[0][0].bus, demands[0][0]._settings
+        asked_s = perf_counter()
+        for _ in range(ATTEMPTS):
+            before: dict[int, int] = {}
+            for axis, mode, value in demands:
+                before |= axis.tell(mode, value)
+            missing = bus.wait_beyond(before, settings.answer_timeout_s)
+            if not missing:
+                return [axis.reading(asked_s) for axis, _, _ in demands]
+        raise _silent(settings, missing, asked_s)
 
     def braking(self) -> tuple[Mode, float]:
         """A torque of 0: friction brakes."""
@@ -209,24 +223,6 @@ class OdriveActuator(OnSharedBus):
 
     def _send(self, command: Command, data: bytes) -> None:
         self.bus.send(can_id(self._settings.node_id, command), data)
-
-
-def exchange_all(demands: Sequence[tuple[OdriveActuator, Mode, float]]) -> list[Reading]:
-    """Send every torque and every question, then wait for all answers.
-
-    Raises:
-        DriveConnectionError: one of them does not answer.
-    """
-    bus, settings = demands[0][0].bus, demands[0][0]._settings
-    asked_s = perf_counter()
-    for _ in range(ATTEMPTS):
-        before: dict[int, int] = {}
-        for axis, mode, value in demands:
-            before |= axis.tell(mode, value)
-        missing = bus.wait_beyond(before, settings.answer_timeout_s)
-        if not missing:
-            return [axis.reading(asked_s) for axis, _, _ in demands]
-    raise _silent(settings, missing, asked_s)
 
 
 def _silent(settings: OdriveSettings, missing: list[int], began_s: float) -> DriveConnectionError:

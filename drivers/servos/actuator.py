@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from time import perf_counter
 from typing import Protocol, TypeVar
 
-from drivers.actuator.actuator import OnSharedBus
+from drivers.actuator.actuator import Actuator
 from drivers.actuator.reading import Reading
 from drivers.contract import Mode
 from drivers.servos.bus import ServoBus
@@ -36,7 +36,7 @@ class ServoSettings(Protocol):
         """The name used in messages."""
 
 
-class ServoActuator(OnSharedBus):
+class ServoActuator(Actuator):
     """What the servos of every protocol do alike.
 
     Args:
@@ -49,6 +49,7 @@ class ServoActuator(OnSharedBus):
         torque_enable: the item that powers the stage.
     """
 
+    bus: ServoBus
     piece: Item
     torque_enable: Item
 
@@ -74,10 +75,22 @@ class ServoActuator(OnSharedBus):
         self._mode = Mode.OFF
         self._write(self.torque_enable, 0)
 
-    def exchange(self, mode: Mode, value: float) -> Reading:
-        """Write the goal and read the piece, in one go."""
-        [reading] = exchange_all([(self, mode, value)])
-        return reading
+    @staticmethod
+    def exchange_all(demands: Sequence[tuple["ServoActuator", Mode, float]]) -> list[Reading]:
+        """Write the goals of servos on one bus, and read the piece of each, in one go.
+
+        Raises:
+            DriveConnectionError: one of them does not answer.
+        """
+        first = demands[0][0]
+        goals: dict[int, dict[int, bytes]] = {}
+        for servo, mode, value in demands:
+            if mode is not Mode.OFF:
+                address, data = servo.goal(mode, value)
+                goals.setdefault(address, {})[servo.servo_id] = data
+        asked_s = perf_counter()
+        answers = first.bus.exchange(goals, tuple(servo.servo_id for servo, _, _ in demands), first.piece)
+        return [servo.reading(answer.data, asked_s) for (servo, _, _), answer in zip(demands, answers, strict=True)]
 
     def braking(self) -> tuple[Mode, float]:
         """A goal of 0: a duty of 0 brakes, a current of 0 does not; a position is kept."""
@@ -99,20 +112,3 @@ class ServoActuator(OnSharedBus):
 
 
 ServoT = TypeVar("ServoT", bound=ServoActuator)
-
-
-def exchange_all(demands: Sequence[tuple[ServoT, Mode, float]]) -> list[Reading]:
-    """Write the goals of servos on one bus, and read the piece of each, in one go.
-
-    Raises:
-        DriveConnectionError: one of them does not answer.
-    """
-    first = demands[0][0]
-    goals: dict[int, dict[int, bytes]] = {}
-    for servo, mode, value in demands:
-        if mode is not Mode.OFF:
-            address, data = servo.goal(mode, value)
-            goals.setdefault(address, {})[servo.servo_id] = data
-    asked_s = perf_counter()
-    answers = first.bus.exchange(goals, tuple(servo.servo_id for servo, _, _ in demands), first.piece)
-    return [servo.reading(answer.data, asked_s) for (servo, _, _), answer in zip(demands, answers, strict=True)]
