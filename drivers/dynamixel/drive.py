@@ -16,7 +16,7 @@ from drivers.joint import JointScale
 from drivers.servos.bus import ServoBus
 from drivers.servos.frames import Item
 from drivers.servos.opening import check_counts, on_line
-from drivers.servos.relay import ServoFollower, ServoRelay, asked_model
+from drivers.servos.relay import ServoFollower, asked_model
 
 _MODES = frozenset({Mode.DUTY, Mode.CURRENT, Mode.POSITION})  # at most: a model without a sensor has no CURRENT
 _OPENING_QUESTIONS = 2 * len(table.GATHERED) + 12
@@ -58,10 +58,10 @@ def follow(settings: DynamixelSettings, joint: JointScale, link: Path, period_s:
     """
     model = asked_model(settings, PROTOCOL_2, table.MODEL_NUMBER, MODELS)
     check_counts(settings.device, model.name, table.COUNTS_PER_TURN, joint)
-    relay = ServoRelay(settings, PROTOCOL_2, _PIECE, link, period_s)
     return ServoFollower(
-        relay, f"ROBOTIS {model.name}", settings.device, lambda data, asked_s: _reading(data, asked_s, model), joint
-    )
+        settings, PROTOCOL_2, _PIECE, link, period_s, f"ROBOTIS {model.name}",
+        lambda data, asked_s: _reading(data, asked_s, model), joint,
+    )  # fmt: skip
 
 
 def _reading(data: bytes, asked_s: float, model: Model) -> Reading:

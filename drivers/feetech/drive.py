@@ -12,7 +12,7 @@ from drivers.feetech.settings import FeetechSettings
 from drivers.joint import JointScale
 from drivers.servos.bus import ServoBus
 from drivers.servos.opening import check_counts, on_line
-from drivers.servos.relay import ServoFollower, ServoRelay, asked_model
+from drivers.servos.relay import ServoFollower, asked_model
 from drivers.wraps import Turns
 
 _MODES = frozenset({Mode.DUTY, Mode.POSITION})
@@ -47,7 +47,7 @@ def follow(settings: FeetechSettings, joint: JointScale, link: Path, period_s: f
     name = asked_model(settings, SCS, memory.MODEL_NUMBER, memory.MODELS)
     check_counts(settings.device, name, memory.COUNTS_PER_TURN, joint)
     turns = Turns(memory.COUNTS_PER_TURN)
-    relay = ServoRelay(settings, SCS, memory.PIECE, link, period_s)
     return ServoFollower(
-        relay, f"Feetech {name}", settings.device, lambda data, asked_s: reading_of(data, asked_s, turns), joint
-    )
+        settings, SCS, memory.PIECE, link, period_s, f"Feetech {name}",
+        lambda data, asked_s: reading_of(data, asked_s, turns), joint,
+    )  # fmt: skip

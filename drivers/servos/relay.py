@@ -27,8 +27,8 @@ _OWED_S = 0.1  # longest wait for an answer to the other program: an adapter, or
 _ALIVE_S = 0.2  # who says nothing for longer counts as silent
 
 
-class ServoRelay:
-    """The line, opened.
+class ServoFollower:
+    """A servo that another program moves, looked at in the pauses of the line.
 
     Args:
         settings: who is looked at, and on which real port.
@@ -36,14 +36,24 @@ class ServoRelay:
         piece: what is read of it.
         link: name of the port that is offered.
         period_s: from one look to the next, at least [s].
+        product: what answers.
+        reading: the piece in SI, of its bytes and when it was asked for.
+        joint: scales and signs.
 
     Raises:
         DriveConnectionError: the real port is not there, or in use.
     """
 
-    def __init__(self, settings: ServoSettings, frames: Frames, piece: Item, link: Path, period_s: float) -> None:
+    is_between = True
+
+    def __init__(
+        self, settings: ServoSettings, frames: Frames, piece: Item, link: Path, period_s: float, product: str,
+        reading: Callable[[bytes, float], Reading], joint: JointScale,
+    ) -> None:  # fmt: skip
         servo_id, port = settings.servo_id, settings.port
-        self.place = str(link)
+        self.product, self.device = product, settings.device
+        self.wanted = f"open {link} in the place of the real port, and leave the line a pause of 2 ms at times"
+        self._reading, self._joint = reading, joint
         self._frames, self._servo_id, self._period_s = frames, servo_id, period_s
         self._question = frames.read(servo_id, piece.address, piece.size)
         self._piece_bytes, self._answer_bytes = piece.size, frames.status_bytes + piece.size
@@ -62,8 +72,8 @@ class ServoRelay:
         """How long the other program has said nothing [s]."""
         return perf_counter() - self._said_s
 
-    def look(self, timeout_s: float) -> tuple[bytes, float] | None:
-        """Pass bytes on for a while [s]; the piece and when it was asked for, as soon as it was read, else None.
+    def look(self, timeout_s: float) -> Sample | None:
+        """Pass on what is said for a while [s]; return a sample as soon as one was taken, else None.
 
         Raises:
             DriveConnectionError: the real port is gone.
@@ -74,7 +84,8 @@ class ServoRelay:
             if self._is_due():
                 found = self._ask()
                 if found is not None:
-                    return found
+                    reading = self._reading(*found)
+                    return sample_of(reading, self._joint, Status.ENABLED if reading.is_on else Status.DISABLED)
         return None
 
     def close(self) -> None:
@@ -125,53 +136,6 @@ class ServoRelay:
             heard += self._line.read(self._answer_bytes - len(heard))
         self._hand_over(heard)
         return None
-
-
-class ServoFollower:
-    """A servo that another program moves, through here.
-
-    Args:
-        relay: the line.
-        product: what answers.
-        device: name used in messages.
-        reading: the piece in SI, of its bytes and when it was asked for.
-        joint: scales and signs.
-    """
-
-    is_between = True
-
-    def __init__(
-        self,
-        relay: ServoRelay,
-        product: str,
-        device: str,
-        reading: Callable[[bytes, float], Reading],
-        joint: JointScale,
-    ) -> None:
-        self._relay, self._reading, self._joint = relay, reading, joint
-        self.product, self.device = product, device
-        self.wanted = f"open {relay.place} in the place of the real port, and leave the line a pause of 2 ms at times"
-
-    @property
-    def silent_s(self) -> float:
-        """How long the other program has said nothing [s]."""
-        return self._relay.silent_s
-
-    def look(self, timeout_s: float) -> Sample | None:
-        """Pass on what is said for a while [s]; return a sample as soon as one was taken, else None.
-
-        Raises:
-            DriveConnectionError: the real port is gone.
-        """
-        found = self._relay.look(timeout_s)
-        if found is None:
-            return None
-        reading = self._reading(*found)
-        return sample_of(reading, self._joint, Status.ENABLED if reading.is_on else Status.DISABLED)
-
-    def close(self) -> None:
-        """Give both ports back. Never raises."""
-        self._relay.close()
 
 
 def asked_model(settings: ServoSettings, frames: Frames, item: Item, models: Mapping[int, ModelT]) -> ModelT:

@@ -69,5 +69,5 @@ def serve_moteus(settings: MoteusBusSettings) -> RunningDevice:
     ]
     if settings.interface:
         on_bus = MoteusOnBus(controllers)
-        return settings.running(on_bus, port_of(on_bus, settings))
+        return settings.running(on_bus, port_of(on_bus, settings, settings.interface, settings.channel))
     return settings.on_pseudo_terminal(FdcanusbAdapter(controllers, settings.is_uart))

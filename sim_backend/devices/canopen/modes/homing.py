@@ -5,7 +5,7 @@ from math import ceil, floor
 
 from sim_backend.devices.axis import TICK_S, Axis
 from sim_backend.devices.canopen.dictionary import Dictionary
-from sim_backend.devices.canopen.modes.mode import HALT, HOMED, HOMING_FAILED, TARGET_REACHED, Seen, Units
+from sim_backend.devices.canopen.modes.mode import HALT, HOMED, HOMING_FAILED, TARGET_REACHED, Mode, Seen, Units
 from sim_backend.devices.canopen.modes.position_loop import PositionLoop
 
 START = 1 << 4  # of the controlword
@@ -21,7 +21,7 @@ FARTHEST_TURNS = 1.5  # of the motor: there is an index pulse in every turn
 LEAD_S = 0.5  # of the speed, by which a search against a stop demands more than it gets
 
 
-class Homing:
+class Homing(Mode):
     """Method (0x6098), speeds (0x6099), acceleration (0x609A), home offset (0x607C).
 
     Bit 4 of the controlword starts, and breaks off where it falls. In the statusword bit 12 is "homing attained", 13
@@ -78,10 +78,6 @@ class Homing:
             self._position = max(seen.counts - lead, min(seen.counts + lead, self._position))
         most, asked = self._most(), self._loop.torque(self._position, self._speed, seen)
         return max(-most, min(most, asked))
-
-    def position(self) -> float | None:
-        """No position is demanded: nothing is astray."""
-        return None
 
     def status(self) -> int:
         """Whether home was found, whether that failed, whether the motor stands."""

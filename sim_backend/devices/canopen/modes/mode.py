@@ -34,6 +34,7 @@ class Mode(Protocol):
 
     def position(self) -> float | None:
         """Return the position that is demanded [counts]; None where none is."""
+        return None
 
     def status(self) -> int:
         """Return the mode's bits of the statusword."""

@@ -2,11 +2,11 @@
 
 from sim_backend.devices.axis import TICK_S
 from sim_backend.devices.canopen.dictionary import Dictionary
-from sim_backend.devices.canopen.modes.mode import FOLLOWS, HALT, TARGET_REACHED, Seen, Units
+from sim_backend.devices.canopen.modes.mode import FOLLOWS, HALT, TARGET_REACHED, Mode, Seen, Units
 from sim_backend.devices.canopen.modes.position_loop import PositionLoop
 
 
-class Velocity:
+class Velocity(Mode):
     """Target velocity (0x60FF), approached by 0x6083 and 0x6084 where it is profiled; torque offset on top.
 
     Args:
@@ -33,10 +33,6 @@ class Velocity:
         self._approach(self._wanted())
         self._position += self._speed * TICK_S
         return self._loop.torque(self._position, self._speed, seen) + self._dictionary.number(0x60B2)
-
-    def position(self) -> float | None:
-        """No position is demanded."""
-        return None
 
     def status(self) -> int:
         """Whether the drive follows, or has reached the speed."""
