@@ -41,7 +41,7 @@ class Rating:
 
 
 def increment(counts_per_turn: float) -> float:
-    """Return the motor angle of one increment of the encoder [rad]."""
+    """Return the motor angle of one increment of the encoder [rad], or the speed of one a second [rad/s]."""
     return 2.0 * pi / counts_per_turn
 
 
@@ -90,8 +90,3 @@ def with_defaults(objects: list[Object], defaults: dict[int, int]) -> list[Objec
 def rpm(_counts_per_turn: float) -> float:
     """Return the motor speed of 1 rpm [rad/s]."""
     return 2.0 * pi / 60.0
-
-
-def increments_per_s(counts_per_turn: float) -> float:
-    """Return the motor speed of one increment a second [rad/s]."""
-    return 2.0 * pi / counts_per_turn
