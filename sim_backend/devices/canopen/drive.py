@@ -63,7 +63,7 @@ class ServoDrive(Device):
         self._measured = Measured(self.axis, self.dictionary, family, rating)
         self._loop = PositionLoop(Gains.tuned(parameters, rating.torque_n_m))
         self._braking = Braking(self._loop)
-        units = Units(self._measured.counts, self._measured.counts_per_s)
+        units = Units(self._measured.counts, self._measured.counts_per_s, self._measured.counts_per_s2)
         self._modes = make_modes(family.modes, self.dictionary, self._loop, units, self.axis, rating.counts_per_turn)
         self._machine = StateMachine(self._option)
         self._wire()
@@ -151,7 +151,7 @@ class ServoDrive(Device):
             self._braking.start(seen)
         if self._braking.done:
             self._set_own_brake()
-        deceleration = self._measured.counts_per_s(self.dictionary.number(ending.ramp.value))
+        deceleration = self._measured.counts_per_s2(self.dictionary.number(ending.ramp.value))
         return self._braking.torque(seen, deceleration)
 
     def _set_own_brake(self) -> None:

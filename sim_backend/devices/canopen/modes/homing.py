@@ -70,7 +70,7 @@ class Homing(Mode):
         if self._searches:
             seen = self._look(seen)
         wanted = self._wanted() if self._searches else 0.0
-        step = self._units.counts_per_s(self._dictionary.number(0x609A)) * TICK_S
+        step = self._units.counts_per_s2(self._dictionary.number(0x609A)) * TICK_S
         self._speed += max(-step, min(step, wanted - self._speed))
         self._position += self._speed * TICK_S
         if self._searches and self._method in END_STOP:

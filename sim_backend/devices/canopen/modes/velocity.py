@@ -48,6 +48,6 @@ class Velocity(Mode):
 
     def _approach(self, wanted: float) -> None:
         slower = abs(wanted) < abs(self._speed)
-        step = self._units.counts_per_s(self._dictionary.number(0x6084 if slower else 0x6083)) * TICK_S
+        step = self._units.counts_per_s2(self._dictionary.number(0x6084 if slower else 0x6083)) * TICK_S
         change = wanted - self._speed
         self._speed += max(-step, min(step, change)) if self._profiled else change

@@ -65,6 +65,7 @@ GENERIC = Family(
     modes=_MODES,
     objects=_objects,
     velocity_rad_s=increment,
+    acceleration_rad_s2=increment,
     torque_unit_n_m=1e-3,
     own_objects=frozenset({(0x2001, 0), (0x2002, 0)}),
     peak=(
