@@ -1,6 +1,7 @@
 """CiA 402 drives on a CAN bus as a kind."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,19 +30,17 @@ def make(settings: CanopenDriveSettings, rig: Rig) -> Drive:
         ConfigurationError: settings that contradict each other.
     """
     from drivers.canopen.drive import CanopenDrive
-    from drivers.errors import DriveConfigurationError
 
-    try:
+    with _refusals():
         return CanopenDrive(_driver_settings(settings, rig), joint_scale(settings, rig))
-    except DriveConfigurationError as error:
-        raise ConfigurationError(str(error)) from error
 
 
 def follow(settings: CanopenDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
     """What listens to one that another master drives.
 
     Raises:
-        ConfigurationError: a COB-ID is no number.
+        ConfigurationError: settings that contradict each other, a mapping without the position, or a COB-ID that is no
+            number.
     """
     from drivers.canopen.follow import follow
 
@@ -49,7 +48,19 @@ def follow(settings: CanopenDriveSettings, rig: Rig, _link: Path, _period_s: flo
         mappings = {int(cob_id, 0): entries for cob_id, entries in settings.tpdo_mapping.items()}
     except ValueError as error:
         raise ConfigurationError(f"drive.tpdo_mapping: {error}; a COB-ID such as '0x185' is wanted") from error
-    return follow(_driver_settings(settings, rig), joint_scale(settings, rig), mappings)
+    with _refusals():
+        return follow(_driver_settings(settings, rig), joint_scale(settings, rig), mappings)
+
+
+@contextmanager
+def _refusals() -> Iterator[None]:
+    """Settings that the driver refuses are wrong in the configuration."""
+    from drivers.errors import DriveConfigurationError
+
+    try:
+        yield
+    except DriveConfigurationError as error:
+        raise ConfigurationError(str(error)) from error
 
 
 def _driver_settings(settings: CanopenDriveSettings, rig: Rig) -> "CanopenSettings":
@@ -77,12 +88,9 @@ def share(drives: "Sequence[CanopenDrive]") -> None:
         ConfigurationError: two have one node ID, or their settings of the bus differ.
     """
     from drivers.canopen.one_bus import share_buses
-    from drivers.errors import DriveConfigurationError
 
-    try:
+    with _refusals():
         share_buses(drives)
-    except DriveConfigurationError as error:
-        raise ConfigurationError(str(error)) from error
 
 
 KIND = DriveKind(
