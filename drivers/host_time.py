@@ -7,8 +7,9 @@ from statistics import median
 from time import perf_counter
 from typing import NamedTuple
 
-from drivers.errors import DriveConfigurationError, DriveFault
+from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveFault
 
+ATTEMPTS = 2  # of a question whose answer does not come, or not intact
 _CYCLES = 15
 _SCHEDULER = Path("/proc/thread-self/schedstat")  # ns on the processor, ns ready and waiting for it, turns
 _BUSY_SHARE = 0.25  # of a cycle; a host that waits for more of it has no time to judge a line by
@@ -114,3 +115,23 @@ def host_was_away(elapsed_s: float, longest_s: float, limit_s: float) -> str:
     if away_s < _BUSY_SHARE * limit_s:
         return ""
     return f"; this host itself was {1e3 * away_s:.2g} ms late, so the line may be sound: end what else runs here"
+
+
+def no_answer(
+    device: str, what: str, check: str, limit_s: float, began_s: float, rest_s: float = 0.0
+) -> DriveConnectionError:
+    """A question was asked `ATTEMPTS` times at most, and not answered.
+
+    Args:
+        device: name used in the message.
+        what: was asked for, and what was found: "registers: found nothing".
+        check: what to look at beside cable and power.
+        limit_s: longest wait for one answer [s].
+        began_s: when it was asked first, of `perf_counter` [s].
+        rest_s: that the line is given after an answer that has not come [s].
+    """
+    away = host_was_away(perf_counter() - began_s, ATTEMPTS * (limit_s + rest_s), limit_s)
+    return DriveConnectionError(
+        device,
+        f"{what} within {limit_s:g} s, asked {ATTEMPTS} times at most; check the cable, the power, {check}{away}",
+    )

@@ -16,6 +16,7 @@ class JointScale:
         motor_sign: 1 where a positive demand turns the joint to positive angles, -1 where it turns it back.
         encoder_sign: 1 where the count rises with the angle, -1 where it falls.
         zero_rad: the angle that the counts alone amount to while the joint is at angle 0 [rad].
+        count_rad: the joint angle of one count [rad].
 
     Raises:
         ValueError: a value that no joint has.
@@ -26,7 +27,7 @@ class JointScale:
     motor_sign: int = 1
     encoder_sign: int = 1
     zero_rad: float = 0.0
-    _count_rad: float = field(init=False, repr=False)
+    count_rad: float = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("counts_per_turn", "gear_ratio"):
@@ -38,12 +39,7 @@ class JointScale:
                 raise ValueError(f"{name} is {getattr(self, name)}; 1 or -1 is wanted")
         if not isfinite(self.zero_rad):
             raise ValueError(f"zero_rad is {self.zero_rad} rad; a finite angle is wanted")
-        object.__setattr__(self, "_count_rad", 2.0 * pi / (self.counts_per_turn * self.gear_ratio))
-
-    @property
-    def count_rad(self) -> float:
-        """The joint angle of one count [rad]."""
-        return self._count_rad
+        object.__setattr__(self, "count_rad", 2.0 * pi / (self.counts_per_turn * self.gear_ratio))
 
     def position_rad(self, counts: float) -> float:
         """Joint angle of a count [rad]."""

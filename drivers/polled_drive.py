@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from contextlib import suppress
 from time import perf_counter
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 from drivers.contract import Command, Description, Drive, Inspection, Mode, Sample, Status
 from drivers.errors import DriveError
@@ -12,6 +12,16 @@ from drivers.refusal import check_demand, check_mode, not_cleared, not_enabled, 
 
 _LIMITS = {Mode.DUTY: (1.0, ""), Mode.CURRENT: (1e3, "A"), Mode.TORQUE: (1e3, "N m"), Mode.POSITION: (1e3, "rad")}
 _OFF = Command(Mode.OFF)
+
+
+class Identity(NamedTuple):
+    """What a drive says of itself; empty where it does not tell."""
+
+    vendor: str
+    product: str
+    firmware: str = ""
+    serial: str = ""
+    simulated: bool = False
 
 
 class PolledSession(Protocol):

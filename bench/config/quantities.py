@@ -4,9 +4,7 @@ A name ends in its unit (`speed_rad_s`). Forms, command-line help and error mess
 the unit that this table gives.
 """
 
-from typing import Any
-
-from pydantic import Field
+from drivers.settings import quantity as quantity
 
 UNITS: dict[str, str] = {  # the longest ending wins
     "_a_s2_rad": "A s2/rad",
@@ -42,15 +40,3 @@ _LONGEST_FIRST = sorted(UNITS, key=len, reverse=True)
 def unit_of(name: str) -> str:
     """The unit that a name ends in; "" where it has none."""
     return next((UNITS[ending] for ending in _LONGEST_FIRST if name.endswith(ending)), "")
-
-
-def quantity(default: Any, unit: str, description: str, **constraints: Any) -> Any:
-    """A pydantic field with a unit; `...` as default makes it required.
-
-    Args:
-        default: SI value.
-        unit: shown beside the value; "" for a number or a name.
-        description: one line for forms and help.
-        constraints: `ge`, `le`, `gt`, `lt`, `min_length`, `max_length` ..., as for `pydantic.Field`.
-    """
-    return Field(default, description=description, json_schema_extra={"unit": unit}, **constraints)

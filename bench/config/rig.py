@@ -6,18 +6,17 @@ Every value is optional: what is unknown is left out, and whoever needs it says 
 from math import pi
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from bench.config.quantities import quantity
 from bench.errors import ConfigurationError
+from drivers.settings import Settings
 
 LONGEST_NAME = 200  # characters
 
 
-class Section(BaseModel):
+class Section(Settings):
     """A table of a TOML file: unknown keys are refused, values are finite."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 class Motor(Section):

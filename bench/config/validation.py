@@ -1,10 +1,10 @@
 """What pydantic found wrong, in words that name the place, the key, the value, what is allowed and the unit."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from difflib import get_close_matches
-from typing import Any, get_args
+from typing import Annotated, Any, Union, get_args
 
-from pydantic import BaseModel, Tag, ValidationError
+from pydantic import BaseModel, Discriminator, Tag, ValidationError
 
 from bench.config.quantities import unit_of
 
@@ -87,3 +87,27 @@ def _is_tag(part: Any) -> bool:
 def _shown(value: Any) -> str:
     text = repr(value)
     return text if len(text) <= _SHOWN_CHARACTERS else f"{text[:_SHOWN_CHARACTERS]}..."
+
+
+def kind_of(model: type[BaseModel]) -> str:
+    """The one word that `kind` of a model may be."""
+    word: str = get_args(model.model_fields["kind"].annotation)[0]
+    return word
+
+
+def chosen_by_kind(models: Iterable[type[BaseModel]], refusal: str, default: str = "") -> Any:
+    """The type of a section that is one of some models, by its `kind`; messages name its keys without the branch.
+
+    Args:
+        models: each has a `kind` of one word.
+        refusal: what is said of any other.
+        default: kind of a section that does not say.
+    """
+
+    def tag(section: Any) -> str:
+        kind = section.get("kind", default) if isinstance(section, dict) else getattr(section, "kind", "")
+        return f"{_TAGGED}{kind}"
+
+    branches = tuple(Annotated[model, Tag(f"{_TAGGED}{kind_of(model)}")] for model in models)
+    chosen = Discriminator(tag, custom_error_type="kind", custom_error_message=refusal)
+    return Annotated[Union[branches], chosen]  # noqa: UP007  made of a list

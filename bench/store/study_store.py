@@ -10,7 +10,7 @@ from bench.store.errors import NotFoundError, StoreStateError
 from bench.store.records import ModelRow, StudyRow
 from bench.store.schema import MODEL, STUDY
 from bench.store.tables import chain
-from bench.store.tables.experiments import insert_row, now
+from bench.store.tables.experiments import insert_row, now, row_of
 
 
 class StudyStore:
@@ -88,17 +88,13 @@ class StudyStore:
 
 
 def _study(connection: Connection, study_id: int) -> StudyRow:
-    row = connection.execute(select(STUDY).where(STUDY.c.id == study_id)).one_or_none()
-    if row is None:
-        raise NotFoundError(f"study {study_id} is not in the store; list the studies to see which are")
-    return StudyRow(**row._asdict())
+    query = select(STUDY).where(STUDY.c.id == study_id)
+    return StudyRow(**row_of(connection, query, f"study {study_id}", "studies")._asdict())
 
 
 def _model(connection: Connection, model_id: int) -> ModelRow:
-    row = connection.execute(select(MODEL).where(MODEL.c.id == model_id)).one_or_none()
-    if row is None:
-        raise NotFoundError(f"model {model_id} is not in the store; list the models of the study to see which are")
-    return ModelRow(**row._asdict())
+    query = select(MODEL).where(MODEL.c.id == model_id)
+    return ModelRow(**row_of(connection, query, f"model {model_id}", "models of the study")._asdict())
 
 
 def _add(connection: Connection, table: Table, row: Values) -> int:

@@ -8,7 +8,7 @@ from sqlalchemy import select
 from bench.config.channels import known_to_lab
 from bench.store.database import Database
 from bench.store.errors import StoreValueError
-from bench.store.records import HIDDEN, Condition, Event, Trial
+from bench.store.records import Condition, Event, Trial
 from bench.store.schema import EXPERIMENT, TRIAL
 from bench.store.tables import conditions as condition_rows
 from bench.store.tables import days, samples, trial_search, trials
@@ -84,17 +84,12 @@ class TrialStore:
 
         `conditions` maps a condition to the wanted value, or to the (lowest, highest) wanted number.
         """
-        filters = condition_rows.match_all(conditions or {})
-        for column, value in ((TRIAL.c.outcome, outcome), (TRIAL.c.experiment_id, experiment_id), (TRIAL.c.kind, kind)):
-            if value is not None:
-                filters.append(column == value)
-        if source is not None:
-            of_source = select(EXPERIMENT.c.id).where(EXPERIMENT.c.source == source)
-            filters.append(TRIAL.c.experiment_id.in_(of_source))
+        wanted = TrialQuery(experiment_id, kind, outcome, conditions=conditions or {})
         with self._database.reading() as connection:
-            hidden = connection.execute(select(EXPERIMENT.c.id).where(EXPERIMENT.c.outcome.in_(HIDDEN))).scalars().all()
-            if hidden:
-                filters.append(TRIAL.c.experiment_id.not_in(hidden))
+            filters = trial_search.filters(connection, wanted)
+            if source is not None:
+                of_source = select(EXPERIMENT.c.id).where(EXPERIMENT.c.source == source)
+                filters.append(TRIAL.c.experiment_id.in_(of_source))
             # the page is found in indexes alone, then its rows are read: a late page costs no more than an early one
             page = select(TRIAL.c.id).where(*filters).order_by(TRIAL.c.id).limit(limit).offset(offset).subquery()
             rows = connection.execute(select(TRIAL).join(page, page.c.id == TRIAL.c.id).order_by(TRIAL.c.id)).all()

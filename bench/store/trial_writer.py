@@ -2,8 +2,6 @@
 
 from collections.abc import Sequence
 
-from sqlalchemy import Connection
-
 from bench.json_types import Values
 from bench.store.database import Database
 from bench.store.errors import StoreStateError
@@ -64,11 +62,8 @@ class TrialWriter:
         """
         self._check_running()
         with self._database.writing() as connection:
-            self._close(connection, outcome, reason, results or {})
+            trials.finish(connection, self.trial_id, outcome, reason, results or {})
         self._finished = True
-
-    def _close(self, connection: Connection, outcome: str, reason: str, results: Values) -> None:
-        trials.finish(connection, self.trial_id, outcome, reason, results)
 
     def _check_running(self) -> None:
         if self._finished:

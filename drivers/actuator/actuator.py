@@ -1,11 +1,12 @@
 """What a kind of actuator has to bring: its protocol, in raw words, without any state of its own."""
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable
-from typing import Protocol
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
 
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.contract import Mode
+from drivers.polled_drive import Identity
 
 
 class Actuator(Protocol):
@@ -14,14 +15,13 @@ class Actuator(Protocol):
     Attributes:
         identity: who answers.
         notes: what the user should know, a sentence each.
+        bus: that it is on, and others may be.
     """
 
     identity: Identity
     notes: tuple[str, ...]
-
-    @property
-    def bus(self) -> object:
-        """That it is on."""
+    bus: Any
+    _leave: Callable[[], None]  # gives the bus back
 
     @property
     def modes(self) -> frozenset[Mode]:
@@ -44,14 +44,29 @@ class Actuator(Protocol):
     def switch_off(self) -> None:
         """Power off."""
 
+    @staticmethod
+    @abstractmethod
+    def exchange_all(demands: Sequence[tuple[Any, Mode, float]]) -> list[Reading]:
+        """One cycle of several actuators of the kind on one bus.
+
+        Args:
+            demands: of each a demand [duty, A, N m or counts]; with `Mode.OFF` none.
+
+        Raises:
+            DriveConnectionError: one of them does not answer.
+        """
+
     def exchange(self, mode: Mode, value: float) -> Reading:
-        """One cycle with a demand [duty, A, N m or counts]; with `Mode.OFF` without one."""
+        """One cycle of this one alone."""
+        [reading] = self.exchange_all([(self, mode, value)])
+        return reading
 
     def braking(self) -> tuple[Mode, float]:
         """The demand of its quick stop."""
 
     def ask(self) -> Reading:
         """What it says of itself, by questions alone."""
+        return self.exchange(Mode.OFF, 0.0)
 
     def clear_fault(self) -> None:
         """Acknowledge what has switched it off, and leave the power off."""
@@ -60,22 +75,5 @@ class Actuator(Protocol):
         """Say once that it shall be off, and wait for no answer. Never raises."""
 
     def close(self) -> None:
-        """Give the port back. Never raises."""
-
-
-class OnSharedBus(ABC):
-    """What actuators do alike whose bus others may be on; `_leave` gives the bus back."""
-
-    _leave: Callable[[], None]
-
-    @abstractmethod
-    def exchange(self, mode: Mode, value: float) -> Reading:
-        """As of `Actuator`."""
-
-    def ask(self) -> Reading:
-        """The question alone."""
-        return self.exchange(Mode.OFF, 0.0)
-
-    def close(self) -> None:
-        """Give the bus back, where nobody else uses it."""
+        """Give the bus back, where nobody else uses it. Never raises."""
         self._leave()

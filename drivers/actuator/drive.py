@@ -5,17 +5,14 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Generic
 
-from drivers.actuator.reading import Identity, Reading
 from drivers.actuator.session import ActuatorSession, ActuatorT
 from drivers.contract import Command, Description, Drive, Mode, Sample, Watchdog
 from drivers.errors import DriveConnectionError
 from drivers.host_time import CycleTime, Lateness
 from drivers.joint import JointScale
-from drivers.polled_drive import PolledDrive
+from drivers.polled_drive import Identity, PolledDrive
 
 _IN_COUNTS = frozenset({"position_rad", "velocity_rad_s"})
-ExchangeAll = Callable[[Sequence[tuple[ActuatorT, Mode, float]]], list[Reading]]
-"""What a kind brings whose bus asks several actuators in one go. It raises `DriveConnectionError`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,16 +45,9 @@ class ActuatorDrive(PolledDrive[ActuatorSession[ActuatorT]], Generic[ActuatorT])
         family: what is known of it.
         joint: scales and signs.
         connect: makes the actuator; the power is off then, and its watchdog set.
-        exchange: asks several actuators of one bus in one go; None: the bus cannot do that.
     """
 
-    def __init__(
-        self,
-        family: Family,
-        joint: JointScale,
-        connect: Callable[[], ActuatorT],
-        exchange: ExchangeAll[ActuatorT] | None = None,
-    ) -> None:
+    def __init__(self, family: Family, joint: JointScale, connect: Callable[[], ActuatorT]) -> None:
         super().__init__(
             family.device,
             family.modes,
@@ -65,7 +55,6 @@ class ActuatorDrive(PolledDrive[ActuatorSession[ActuatorT]], Generic[ActuatorT])
             connect=lambda: ActuatorSession(family.device, connect, joint, family.watchdog_s),
             describe=lambda session, cycle: _describe(family, joint, session, cycle),
         )
-        self._exchange_all = exchange
 
     def open(self, period_s: float) -> None:
         """Connect, identify, switch off, set the watchdog; it has the modes then that it says that it has.
@@ -79,8 +68,8 @@ class ActuatorDrive(PolledDrive[ActuatorSession[ActuatorT]], Generic[ActuatorT])
 
     @property
     def bus(self) -> object | None:
-        """The bus that it shares; None while it is not open, or where its bus asks one at a time."""
-        return None if self._session is None or self._exchange_all is None else self._session.actuator.bus
+        """The bus that it shares; None while it is not open."""
+        return None if self._session is None else self._session.actuator.bus
 
     def exchange_together(self, commands: Sequence[tuple[Drive, Command]]) -> list[Sample]:
         """Send a command to each of some drives on its bus, in one exchange.
@@ -89,12 +78,11 @@ class ActuatorDrive(PolledDrive[ActuatorSession[ActuatorT]], Generic[ActuatorT])
             DriveError: as `exchange`.
         """
         drives = [drive for drive, _ in commands if isinstance(drive, ActuatorDrive)]
-        assert self._exchange_all is not None
         assert len(drives) == len(commands)
         told = [command for _, command in commands]
         sessions = [drive._ready(command) for drive, command in zip(drives, told, strict=True)]
         sent_s = perf_counter()
-        samples = _exchange_all(sessions, told, self._exchange_all)
+        samples = _exchange_all(sessions, told)
         for drive in drives:
             drive._lateness.told(sent_s)
         return samples
@@ -110,11 +98,7 @@ def _describe(
     steps = {} if actuator is None else actuator.steps
     return Description(
         device=family.device,
-        vendor=identity.vendor,
-        product=identity.product,
-        firmware=identity.firmware,
-        serial=identity.serial,
-        simulated=identity.simulated,
+        **identity._asdict(),
         modes=family.modes if actuator is None else actuator.modes,
         measured=frozenset() if actuator is None else actuator.measured,
         resolution={name: step * (joint.count_rad if name in _IN_COUNTS else 1.0) for name, step in steps.items()},
@@ -127,9 +111,7 @@ def _describe(
     )
 
 
-def _exchange_all(
-    sessions: Sequence[ActuatorSession[ActuatorT]], commands: Sequence[Command], exchange: ExchangeAll[ActuatorT]
-) -> list[Sample]:
+def _exchange_all(sessions: Sequence[ActuatorSession[ActuatorT]], commands: Sequence[Command]) -> list[Sample]:
     """One cycle of several sessions, whose commands have been found to be allowed.
 
     Raises:
@@ -140,7 +122,7 @@ def _exchange_all(
         for session, command in zip(sessions, commands, strict=True)
     ]
     try:
-        readings = exchange(demands)
+        readings = sessions[0].actuator.exchange_all(demands)
     except DriveConnectionError:
         for session in sessions:
             session.give_up()

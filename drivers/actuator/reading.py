@@ -8,16 +8,6 @@ from drivers.contract import Ages, Sample, Status
 from drivers.joint import JointScale
 
 
-class Identity(NamedTuple):
-    """What an actuator says of itself; empty where it does not tell."""
-
-    vendor: str
-    product: str
-    firmware: str = ""
-    serial: str = ""
-    simulated: bool = False
-
-
 class Reading(NamedTuple):
     """One answer. Signs are the actuator's own; a quantity that is not measured is NaN.
 

@@ -1,6 +1,8 @@
-"""Opening and closing a CAN bus of python-can in bounded time."""
+"""Opening a CAN bus of python-can, sending on it and closing it in bounded time."""
 
+import errno
 import socket
+import time
 from contextlib import suppress
 
 import can
@@ -13,6 +15,8 @@ from drivers.errors import DriveConnectionError
 _OPEN_S = 3.0
 _CLOSE_S = 1.0
 _KNOCK_S = 2.0
+_SEND_S = 0.02  # longest wait for room in the transmit buffer
+_RETRY_S = 0.0005
 
 _NEXT_STEP = {
     "socketcan": "is the interface there and up? `ip link set {channel} up type can bitrate {bitrate}`",
@@ -54,6 +58,30 @@ def open_bus(settings: BusSettings, device: str) -> can.BusABC:
         raise DriveConnectionError(
             device, f"the bus {settings.interface} {settings} does not open: {error}; {step}"
         ) from error
+
+
+def send(bus: can.BusABC, message: can.Message) -> None:
+    """Send a frame, and wait for room in the transmit buffer where there is none.
+
+    Raises:
+        CanError, OSError: there is no room in time (`is_full`), or the bus cannot be sent on.
+    """
+    end_s = 0.0  # a clock is asked only where there was no room
+    while True:
+        try:
+            bus.send(message, _SEND_S)
+            return
+        except (can.CanError, OSError) as error:
+            end_s = end_s or time.perf_counter() + _SEND_S
+            if not is_full(error) or time.perf_counter() > end_s:
+                raise
+            time.sleep(_RETRY_S)
+
+
+def is_full(error: Exception) -> bool:
+    """Whether nothing was sent for want of room: SocketCAN tells it by a number, other interfaces by words."""
+    code = getattr(error, "error_code", None) or getattr(error, "errno", None)
+    return code in (errno.ENOBUFS, errno.EAGAIN) or "buffer full" in str(error).lower()
 
 
 def close_bus(bus: can.BusABC) -> None:

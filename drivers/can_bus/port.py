@@ -7,12 +7,10 @@ from typing import NamedTuple, TypeVar
 import can
 
 from drivers.actuator.open_buses import OpenBuses
-from drivers.can_bus.bus import close_bus, open_bus
+from drivers.can_bus.bus import close_bus, open_bus, send
 from drivers.can_bus.settings import BusSettings
 from drivers.errors import DriveConnectionError
 
-_SEND_S = 0.02  # longest wait for room in the transmit buffer
-_RETRY_S = 0.0005
 EXTENDED = 1 << 31  # in an identifier: it has 29 bits, as of SocketCAN
 _MOST_WAITING = 2000  # frames taken in at once: a babbling node must not hold the loop
 
@@ -76,16 +74,10 @@ class CanPort:
         Raises:
             DriveConnectionError: as `send`.
         """
-        end_s = 0.0  # a clock is asked only where there was no room
-        while True:
-            try:
-                self._bus.send(message)
-                return
-            except (can.CanError, OSError) as error:
-                end_s = end_s or time.perf_counter() + _SEND_S
-                if "buffer full" not in str(error).lower() or time.perf_counter() > end_s:
-                    raise self._lost("sending", error) from error
-                time.sleep(_RETRY_S)
+        try:
+            send(self._bus, message)
+        except (can.CanError, OSError) as error:
+            raise self._lost("sending", error) from error
 
     def number(self, can_id: int) -> int:
         """How many frames of an identifier have come."""

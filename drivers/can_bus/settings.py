@@ -2,13 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Literal, get_args
+
+from drivers.settings import Settings, quantity
 
 _WITHOUT_BITRATE = ("socketcan", "virtual", "udp_multicast")  # the bus has it already, or has none
 _NAMED_CHANNELS = ("virtual", "socketcan", "socketcand", "slcan")
 
-BITRATES = (10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 1_000_000)
+Bitrate = Literal[10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 1_000_000]
+BITRATES: tuple[int, ...] = get_args(Bitrate)
 """Bit rates of CiA 301 that every interface here knows [bit/s]."""
+Options = dict[str, str | int | float | bool]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,3 +79,23 @@ class BusSettings:
     def _channel(self) -> str | int:
         """Kvaser and others number their channels."""
         return int(self.channel) if self.channel.isdigit() and self.interface not in _NAMED_CHANNELS else self.channel
+
+
+class CanSettings(Settings):
+    """How the bus of one drive is reached; the settings of a kind of drive derive from it."""
+
+    interface: str = quantity(
+        ..., "", "Interface of python-can: socketcan (Linux), slcan (serial adapter), pcan, kvaser ...", min_length=1
+    )
+    channel: str = quantity(..., "", "can0, /dev/ttyACM0, PCAN_USBBUS1", min_length=1)
+    bitrate: Bitrate = quantity(1_000_000, "bit/s", "Bit rate of the bus")
+    tty_baudrate: int = quantity(
+        115200, "bit/s", "Baud rate of the serial line of an slcan adapter; ignored on USB", ge=9600
+    )
+    adapter_start_s: float = quantity(0.0, "s", "What an slcan adapter needs after its port is opened", ge=0, le=10)
+    options: Options = quantity({}, "", "What else the interface takes, as python-can's documentation of it says")
+
+    @property
+    def bus(self) -> BusSettings:
+        """The bus alone."""
+        return BusSettings(**{name: getattr(self, name) for name in CanSettings.model_fields})

@@ -5,13 +5,6 @@ Sources: CiA 301 (communication), CiA 402-2 and -3 (drives), CiA 303-2 (units), 
 
 import logging
 
-from drivers.can_bus.settings import BusSettings
-from drivers.canopen.drive import CanopenDrive
-from drivers.canopen.one_bus import share_buses
-from drivers.canopen.settings import CanopenSettings
-
-__all__ = ["BusSettings", "CanopenDrive", "CanopenSettings", "share_buses"]
-
 # what the libraries log is raised here as an error; without a handler of its own Python would print it as well
 for _name in ("can", "canopen"):
     logging.getLogger(_name).addHandler(logging.NullHandler())

@@ -9,14 +9,14 @@ from drivers.can_bus.follower import BusFollower
 from drivers.can_bus.port import CanPort, Heard
 from drivers.canopen.cia301.objects import POSITION, STATUSWORD, TORQUE, VELOCITY, DriveObject
 from drivers.canopen.cia402.profiles import CIA402, EPOS4
-from drivers.canopen.cia402.units import velocity_unit_code, velocity_unit_rad_s
+from drivers.canopen.cia402.state_machine import State, state_of
+from drivers.canopen.cia402.units import VELOCITY_CODES, velocity_unit_rad_s
 from drivers.canopen.settings import CanopenSettings
 from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale
 
 # the first that is there tells the current: what is measured before what is relative to the rated torque
 _EFFORTS = (EPOS4.current, CIA402.current, TORQUE)
-_ENABLED, _FAULT = (0x6F, 0x27), (0x4F, 0x08)  # of the statusword: mask, value
 Mappings = Mapping[int, Sequence[int]]
 """Entries of each TPDO (index, subindex, bits: 0x60640020) by its COB-ID, as 0x1A00 and the next have them."""
 
@@ -45,7 +45,7 @@ def follow(settings: CanopenSettings, joint: JointScale, mappings: Mappings) -> 
     effort = next((item for item in _EFFORTS if item.mapping in places), None)
     ampere = _ampere(effort, settings)
     unit = settings.velocity_unit
-    unit_rad_s = velocity_unit_rad_s(velocity_unit_code(unit), joint.counts_per_turn) if unit else None
+    unit_rad_s = velocity_unit_rad_s(VELOCITY_CODES[unit], joint.counts_per_turn) if unit else None
     counts_s = nan if unit_rad_s is None else unit_rad_s / (2.0 * pi) * joint.counts_per_turn
 
     def value(port: CanPort, item: DriveObject | None) -> float:
@@ -60,10 +60,12 @@ def follow(settings: CanopenSettings, joint: JointScale, mappings: Mappings) -> 
         if position != position:  # no TPDO with it has come yet
             return None
         word = value(port, STATUSWORD)
-        state = int(word) if word == word else _ENABLED[1]  # whether it is powered is not told: who moves is
+        state = (
+            state_of(int(word)) if word == word else State.ENABLED
+        )  # whether it is powered is not told: who moves is
         return Reading(
             heard.at_s, position, value(port, VELOCITY) * counts_s, nan, value(port, effort) * ampere,
-            is_on=state & _ENABLED[0] == _ENABLED[1], fault="fault" if state & _FAULT[0] == _FAULT[1] else "",
+            is_on=state is State.ENABLED, fault="fault" if state is State.FAULT else "",
         )  # fmt: skip
 
     last_id = max(one.cob_id for one in places.values())

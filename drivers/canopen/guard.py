@@ -67,6 +67,7 @@ class Guard:
         quick_stop_ends: whether a quick stop that nobody watches ends soon in power-off.
 
     Attributes:
+        kind: how the drive notices.
         armed: whether it watches now.
         tried: whether it has been seen to stop the drive since opening.
     """
@@ -79,7 +80,7 @@ class Guard:
         self._settings = settings
         self._host_id = host_id
         self._quick_stop_ends = quick_stop_ends
-        self._kind = Kind.IN_DRIVE
+        self.kind = Kind.IN_DRIVE
         self._reaction = Reaction(False, "")
         self._timers: tuple[DriveObject, ...] = ()
         self._sign_s = float("-inf")
@@ -87,19 +88,14 @@ class Guard:
         self.tried = False
 
     @property
-    def kind(self) -> Kind:
-        """How the drive notices."""
-        return self._kind
-
-    @property
     def is_told(self) -> bool:
         """Whether the drive's own dictionary says that it stops; else it has to be tried."""
-        return self._reaction.told and self._kind is not Kind.IN_DRIVE
+        return self._reaction.told and self.kind is not Kind.IN_DRIVE
 
     @property
     def words(self) -> str:
         """What it is, for a person."""
-        return f"{self._kind.value}, {self._settings.watchdog_s:g} s; then {self._reaction.words}"
+        return f"{self.kind.value}, {self._settings.watchdog_s:g} s; then {self._reaction.words}"
 
     def prepare(self) -> None:
         """Choose how the drive is to watch, set what it does then, and try each object: on, read back, off again.
@@ -117,11 +113,11 @@ class Guard:
             refusals.append(f"{kind.value}: {why}")
         else:
             self._accept_own(refusals)
-        self._table.note(self._kind.value, Need.REQUIRED, _PURPOSE, True, f"then {self._reaction.words}")
+        self._table.note(self.kind.value, Need.REQUIRED, _PURPOSE, True, f"then {self._reaction.words}")
 
     def watch_demands(self, numbers: tuple[int, ...]) -> None:
         """Tell which RPDOs carry demands: their event timers watch, where nothing else does."""
-        if self._kind is Kind.RPDO:
+        if self.kind is Kind.RPDO:
             self._timers = tuple(_timer(number) for number in numbers)
 
     def arm(self) -> None:
@@ -150,9 +146,9 @@ class Guard:
         if now_s - self._sign_s < self._settings.watchdog_s / _SIGNS:
             return
         self._sign_s = now_s
-        if self._kind is Kind.HEARTBEAT:
+        if self.kind is Kind.HEARTBEAT:
             self._link.send_message(0x700 + self._host_id, bytes([NmtState.OPERATIONAL]))
-        elif self._kind is Kind.LIFE and self.armed:
+        elif self.kind is Kind.LIFE and self.armed:
             self._link.send_message(0x700 + self._settings.node_id, b"", remote=True)
 
     def hurry(self) -> None:
@@ -162,7 +158,7 @@ class Guard:
     @property
     def silences_heartbeat(self) -> bool:
         """Whether the drive answers requests instead of sending heartbeats of its own."""
-        return self._kind is Kind.LIFE
+        return self.kind is Kind.LIFE
 
     @property
     def _off_words(self) -> str:
@@ -172,7 +168,7 @@ class Guard:
     def _watching(self) -> list[tuple[DriveObject, int]]:
         """The objects that make it watch, and their values."""
         time_ms = round(self._settings.watchdog_s * 1000)
-        match self._kind:
+        match self.kind:
             case Kind.HEARTBEAT:
                 return [(CONSUMER_HEARTBEAT, self._host_id << 16 | time_ms)]
             case Kind.LIFE:
@@ -186,7 +182,7 @@ class Guard:
         """Switch a kind on and off again; return why it cannot be used, "" where it can."""
         if kind is Kind.LIFE and not self._settings.bus.sends_remote_frames:
             return f"python-can sends no remote frames over {self._settings.bus.interface}"
-        self._kind, self._timers = kind, (_timer(1),)
+        self.kind, self._timers = kind, (_timer(1),)
         try:
             if kind is Kind.LIFE:  # a node that sends heartbeats does not guard
                 self._table.try_set(PRODUCER_HEARTBEAT, 0, "the drive is asked instead")
@@ -205,7 +201,7 @@ class Guard:
                 "on when this host dies. Where the drive's own tool has set one, say watchdog_is_set_in_drive = true; "
                 "it is tried before the first motion",
             )
-        self._kind = Kind.IN_DRIVE
+        self.kind = Kind.IN_DRIVE
         self._reaction = Reaction(False, "whatever was set with the drive's own tool")
 
     def _prepare_reaction(self) -> Reaction:

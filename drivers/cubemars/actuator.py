@@ -4,7 +4,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from time import perf_counter
 
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.can_bus.port import CanPort, Heard
 from drivers.contract import Mode
 from drivers.cubemars import protocol
@@ -13,6 +13,7 @@ from drivers.errors import DriveConnectionError, WatchdogError
 from drivers.joint import JointScale
 from drivers.mit.actuator import NO_CURRENT, MitActuator, chosen_ranges
 from drivers.mit.frames import DISABLE, ENABLE, Frame, command
+from drivers.polled_drive import Identity
 
 _NO_WATCHDOG = (
     "IT HAS NO WATCHDOG that its manual names: where this computer or the cable fails, the motor goes on with the last "

@@ -10,7 +10,7 @@ from drivers.cubemars import protocol
 from drivers.cubemars.actuator import CubemarsActuator
 from drivers.cubemars.settings import CubemarsSettings
 from drivers.joint import JointScale
-from drivers.mit.actuator import chosen_ranges, exchange_all, reading_of
+from drivers.mit.actuator import chosen_ranges, reading_of
 
 _OPENING_QUESTIONS = 6
 
@@ -27,7 +27,6 @@ class CubemarsDrive(ActuatorDrive[CubemarsActuator]):
             family,
             joint,
             lambda: on_bus(settings.bus, lambda port, leave: CubemarsActuator(port, settings, joint, leave)),
-            exchange_all,
         )
 
 

@@ -1,35 +1,33 @@
 """What has to be known of a CubeMars actuator before it is opened."""
 
-from dataclasses import dataclass
+from typing import Literal
 
-from drivers.can_bus.settings import BusSettings
+from drivers.can_bus.settings import CanSettings
+from drivers.settings import quantity
+
+Model = Literal[
+    "", "AK10-9", "AK40-10", "AK45-10", "AK45-36", "AK60-6", "AK70-10", "AK80-6", "AK80-8", "AK80-9", "AK80-64"
+]
 
 
-@dataclass(frozen=True, slots=True)
-class CubemarsSettings:
-    """How to reach one actuator.
+class CubemarsSettings(CanSettings):
+    """How to reach one actuator."""
 
-    Attributes:
-        bus: how the bus is reached.
-        motor_id: to which it listens.
-        feedback_id: identifier of its answers; None: `motor_id`, as of the present firmware.
-        model: whose ranges its frames have; "": they are written.
-        position_range_rad, speed_range_rad_s, torque_range_n_m: those of another firmware; 0: the model's.
-        accept_no_watchdog: True where it is known that nothing stops it when the host falls silent.
-        is_simulated: True of a simulated device: its frames have no place for that.
-        answer_timeout_s: longest wait for one answer [s].
-    """
-
-    bus: BusSettings
-    motor_id: int = 1
-    feedback_id: int | None = None
-    model: str = ""
-    position_range_rad: float = 0.0
-    speed_range_rad_s: float = 0.0
-    torque_range_n_m: float = 0.0
-    accept_no_watchdog: bool = False
-    is_simulated: bool = False
-    answer_timeout_s: float = 0.05
+    motor_id: int = quantity(1, "", "CAN id of the actuator", ge=1, le=0x7F)
+    feedback_id: int | None = quantity(
+        None, "", "Identifier of its answers; left out: motor_id; 0 with older firmware", ge=0, le=0x7FF
+    )
+    model: Model = quantity("", "", "Model on its plate, whose ranges its frames have")
+    position_range_rad: float = quantity(
+        0.0, "rad", "Range of another firmware, with the next two; 0: the model's", ge=0
+    )
+    speed_range_rad_s: float = quantity(0.0, "rad/s", "Range of another firmware; 0: the model's", ge=0)
+    torque_range_n_m: float = quantity(0.0, "N m", "Range of another firmware; 0: the model's", ge=0)
+    accept_no_watchdog: bool = quantity(
+        False, "", "true: it is known that the motor goes on with the last torque where this computer falls silent"
+    )
+    is_simulated: bool = quantity(False, "", "true of a simulated device: its frames have no place for that")
+    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.002, le=1.0)
 
     @property
     def device(self) -> str:

@@ -5,15 +5,17 @@ from math import inf
 from struct import Struct
 from time import perf_counter
 
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.can_bus.port import CanPort, Heard
 from drivers.damiao import protocol
 from drivers.damiao.protocol import MODELS, Register, register_frame
 from drivers.damiao.settings import DamiaoSettings
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError, WatchdogError
+from drivers.host_time import ATTEMPTS
 from drivers.joint import JointScale
-from drivers.mit.actuator import ATTEMPTS, MitActuator
+from drivers.mit.actuator import MitActuator
 from drivers.mit.frames import CLEAR_ERRORS, DISABLE, ENABLE, Frame, Ranges, command
+from drivers.polled_drive import Identity
 
 _NEAR = 1e-4  # of a range, relative
 SIMULATED_SOFTWARE = 0xFFFF_FFFF

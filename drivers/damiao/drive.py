@@ -12,7 +12,7 @@ from drivers.damiao.actuator import DamiaoActuator
 from drivers.damiao.settings import DamiaoSettings
 from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale
-from drivers.mit.actuator import exchange_all, reading_of
+from drivers.mit.actuator import reading_of
 
 _MODES = frozenset({Mode.TORQUE})
 _OPENING_QUESTIONS = 16
@@ -31,7 +31,6 @@ class DamiaoDrive(ActuatorDrive[DamiaoActuator]):
             family,
             joint,
             lambda: on_bus(settings.bus, lambda port, leave: DamiaoActuator(port, settings, joint, leave)),
-            exchange_all,
         )
 
 

@@ -1,29 +1,24 @@
 """What has to be known of a Damiao actuator before it is opened."""
 
-from dataclasses import dataclass
+from typing import Literal
 
-from drivers.can_bus.settings import BusSettings
+from drivers.can_bus.settings import CanSettings
+from drivers.settings import quantity
+
+Model = Literal[
+    "", "DM3507", "DM4310", "DM4310P", "DM4340", "DM4340P", "DM6006", "DM8006", "DM8009", "DM10010L", "DM10010",
+    "DMH3510", "DMG6215", "DMH6220",
+]  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
-class DamiaoSettings:
-    """How to reach one actuator.
+class DamiaoSettings(CanSettings):
+    """How to reach one actuator."""
 
-    Attributes:
-        bus: how the bus is reached.
-        motor_id: ESC_ID, to which it listens.
-        feedback_id: MST_ID, with which it answers; of each actuator another one.
-        model: whose ranges it has to have; "": those that it says are taken.
-        watchdog_s: silence after which it stops [s], set in its TIMEOUT register.
-        answer_timeout_s: longest wait for one answer [s].
-    """
-
-    bus: BusSettings
-    motor_id: int = 1
-    feedback_id: int = 0x11
-    model: str = ""
-    watchdog_s: float = 0.2
-    answer_timeout_s: float = 0.05
+    motor_id: int = quantity(1, "", "ESC_ID of the actuator", ge=1, le=0x7FE)
+    feedback_id: int = quantity(0x11, "", "MST_ID of the actuator; of each another one", ge=0, le=0x7FE)
+    model: Model = quantity("", "", "Model whose ranges it has to have; left out: those that it says are taken")
+    watchdog_s: float = quantity(0.2, "s", "Silence after which it stops, set in its TIMEOUT register", ge=0.01, le=2)
+    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.002, le=1.0)
 
     @property
     def device(self) -> str:

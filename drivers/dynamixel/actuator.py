@@ -23,7 +23,6 @@ _MODES = {
     Mode.CURRENT: (table.CURRENT_MODE, table.GOAL_CURRENT),
     Mode.POSITION: (table.POSITION_MODE, table.GOAL_POSITION),
 }
-_COUNTS_S = table.VELOCITY_RPM / 60.0 * table.COUNTS_PER_TURN  # of one step of Present Velocity
 _REBOOT_S, _REBOOT_TRIES = 0.1, 20
 _WATCHDOG_FAULT = "its bus watchdog has stopped it: nothing was heard for too long"
 
@@ -70,7 +69,7 @@ class DynamixelActuator(ServoActuator):
         """Smallest step of each quantity."""
         found = {
             "position_rad": 1.0,
-            "velocity_rad_s": _COUNTS_S,
+            "velocity_rad_s": table.COUNTS_S,
             "duty": 1.0 / table.DUTY_FULL,
             "supply_v": table.SUPPLY_V,
             "temperature_c": 1.0,
@@ -103,7 +102,7 @@ class DynamixelActuator(ServoActuator):
         if watchdog == table.WATCHDOG_TRIPPED:
             fault = fault or _WATCHDOG_FAULT
         return Reading(
-            asked_s, position, velocity * _COUNTS_S, pwm / table.DUTY_FULL,
+            asked_s, position, velocity * table.COUNTS_S, pwm / table.DUTY_FULL,
             nan if self.model.current_a is None else current * self.model.current_a, nan,
             supply * table.SUPPLY_V, temperature, bool(is_on), fault, self._clock.follow(tick * table.TICK_S),
         )  # fmt: skip

@@ -28,6 +28,7 @@ ANSWERS_ALL = 2  # Status Return Level
 DUTY_FULL = 885  # of Goal PWM and Present PWM
 VELOCITY_RPM = 0.229  # one step of Present Velocity
 COUNTS_PER_TURN = 4096
+COUNTS_S = VELOCITY_RPM / 60.0 * COUNTS_PER_TURN  # the same, in counts a second
 SUPPLY_V = 0.1
 TICK_S, TICK_BITS = 1e-3, 15  # of Realtime Tick
 

@@ -13,11 +13,10 @@ from drivers.dynamixel.frames import PROTOCOL_2
 from drivers.dynamixel.models import MODELS, Model
 from drivers.dynamixel.settings import DynamixelSettings
 from drivers.joint import JointScale
-from drivers.servos.actuator import exchange_all
 from drivers.servos.bus import ServoBus
 from drivers.servos.frames import Item
 from drivers.servos.opening import check_counts, on_line
-from drivers.servos.relay import ServoFollower, ServoRelay, number_of, unknown_model
+from drivers.servos.relay import ServoFollower, asked_model
 
 _MODES = frozenset({Mode.DUTY, Mode.CURRENT, Mode.POSITION})  # at most: a model without a sensor has no CURRENT
 _OPENING_QUESTIONS = 2 * len(table.GATHERED) + 12
@@ -27,7 +26,6 @@ _REBOOT_S = 4.0  # of `clear_fault`
 # Velocity, Position; two trajectories; Input Voltage, Temperature
 _PIECE = Item(124, 23, "what it measures")
 _LAYOUT = Struct("<hhii8xHB")
-_COUNTS_S = table.VELOCITY_RPM / 60.0 * table.COUNTS_PER_TURN
 
 
 class DynamixelDrive(ActuatorDrive[DynamixelActuator]):
@@ -39,17 +37,11 @@ class DynamixelDrive(ActuatorDrive[DynamixelActuator]):
             settings.device, "ROBOTIS", _MODES, "bus watchdog", settings.set_watchdog_s,
             answer_s + _REBOOT_S, _OPENING_QUESTIONS * answer_s,
         )  # fmt: skip
-        super().__init__(family, joint, lambda: _opened(settings, joint), exchange_all)
-
-
-def _opened(settings: DynamixelSettings, joint: JointScale) -> DynamixelActuator:
-    return on_line(
-        settings.port,
-        settings.baud_rate,
-        settings.answer_timeout_s,
-        PROTOCOL_2,
-        lambda bus, leave: DynamixelActuator(bus, settings, joint, leave),
-    )
+        super().__init__(
+            family,
+            joint,
+            lambda: on_line(settings, PROTOCOL_2, lambda bus, leave: DynamixelActuator(bus, settings, joint, leave)),
+        )
 
 
 def follow(settings: DynamixelSettings, joint: JointScale, link: Path, period_s: float) -> ServoFollower:
@@ -64,23 +56,19 @@ def follow(settings: DynamixelSettings, joint: JointScale, link: Path, period_s:
     Raises:
         DriveError: the port is not there or in use, nobody answers, or it is another servo than the rig's.
     """
-    line = settings.port, settings.baud_rate, settings.answer_timeout_s, PROTOCOL_2, settings.servo_id
-    number = number_of(*line, table.MODEL_NUMBER)
-    model = MODELS.get(number)
-    if model is None:
-        raise unknown_model(settings.device, number)
+    model = asked_model(settings, PROTOCOL_2, table.MODEL_NUMBER, MODELS)
     check_counts(settings.device, model.name, table.COUNTS_PER_TURN, joint)
-    relay = ServoRelay(*line, _PIECE, link, period_s)
     return ServoFollower(
-        relay, f"ROBOTIS {model.name}", settings.device, lambda data, asked_s: _reading(data, asked_s, model), joint
-    )
+        settings, PROTOCOL_2, _PIECE, link, period_s, f"ROBOTIS {model.name}",
+        lambda data, asked_s: _reading(data, asked_s, model), joint,
+    )  # fmt: skip
 
 
 def _reading(data: bytes, asked_s: float, model: Model) -> Reading:
     """The piece in SI. Whether it is powered is not in it: who moves is."""
     pwm, current, velocity, position, supply, temperature = _LAYOUT.unpack(data)
     return Reading(
-        asked_s, position, velocity * _COUNTS_S, pwm / table.DUTY_FULL,
+        asked_s, position, velocity * table.COUNTS_S, pwm / table.DUTY_FULL,
         nan if model.current_a is None else current * model.current_a, nan,
         supply * table.SUPPLY_V, temperature, True,
     )  # fmt: skip

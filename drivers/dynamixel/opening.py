@@ -1,11 +1,11 @@
 """What is settled with a servo before anything moves: who it is, that it is off, its limits, and its bus watchdog."""
 
-from drivers.actuator.reading import Identity
 from drivers.dynamixel import control_table as table
 from drivers.dynamixel.models import MODELS, Model
 from drivers.dynamixel.settings import DynamixelSettings
 from drivers.errors import DriveConfigurationError, DriveError, DriveStateError, WatchdogError
 from drivers.joint import JointScale
+from drivers.polled_drive import Identity
 from drivers.servos.bus import ServoBus
 from drivers.servos.frames import Item
 from drivers.servos.opening import check_counts

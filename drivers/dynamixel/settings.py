@@ -1,32 +1,29 @@
 """What has to be known of a Dynamixel before it is opened."""
 
-from dataclasses import dataclass
 from math import ceil
+from typing import Literal
 
 from drivers.dynamixel.control_table import WATCHDOG_STEP_S
+from drivers.settings import Settings, quantity
 
 _LONGEST_STEPS = 127
 
+BaudRate = Literal[9600, 57600, 115200, 1_000_000, 2_000_000, 3_000_000, 4_000_000, 4_500_000]
 
-@dataclass(frozen=True, slots=True)
-class DynamixelSettings:
-    """How to reach one servo.
 
-    Attributes:
-        port: serial port ("/dev/ttyUSB0").
-        baud_rate: of the line.
-        servo_id: 0 .. 252.
-        watchdog_s: silence after which the servo stops [s], in steps of 0.02 s.
-        answer_timeout_s: longest wait for one answer [s].
-        current_limit_a: highest motor current [A], set in the servo while its power is off; None: the servo's own.
-    """
+class DynamixelSettings(Settings):
+    """How to reach one servo."""
 
-    port: str
-    baud_rate: int = 57600
-    servo_id: int = 1
-    watchdog_s: float = 0.2
-    answer_timeout_s: float = 0.05
-    current_limit_a: float | None = None
+    port: str = quantity(..., "", "Serial port, such as /dev/ttyUSB0", min_length=1)
+    baud_rate: BaudRate = quantity(57600, "", "Baud rate of the line")
+    servo_id: int = quantity(1, "", "Id of the servo", ge=0, le=252)
+    watchdog_s: float = quantity(
+        0.2, "s", "Silence on the bus after which it stops the motor, in steps of 0.02 s", ge=0.02, le=2.0
+    )
+    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.002, le=1.0)
+    current_limit_a: float | None = quantity(
+        None, "A", "Highest motor current, set in the servo; left out: the servo's own", gt=0, le=10
+    )
 
     @property
     def device(self) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, WatchdogError
 from drivers.feetech import memory
@@ -10,6 +10,7 @@ from drivers.feetech.frames import with_sign
 from drivers.feetech.memory import reading_of
 from drivers.feetech.settings import FeetechSettings
 from drivers.joint import JointScale
+from drivers.polled_drive import Identity
 from drivers.serial_latency import latency_note
 from drivers.servos.actuator import ServoActuator
 from drivers.servos.bus import ServoBus

@@ -10,10 +10,9 @@ from drivers.feetech.frames import SCS
 from drivers.feetech.memory import reading_of
 from drivers.feetech.settings import FeetechSettings
 from drivers.joint import JointScale
-from drivers.servos.actuator import exchange_all
 from drivers.servos.bus import ServoBus
 from drivers.servos.opening import check_counts, on_line
-from drivers.servos.relay import ServoFollower, ServoRelay, number_of, unknown_model
+from drivers.servos.relay import ServoFollower, asked_model
 from drivers.wraps import Turns
 
 _MODES = frozenset({Mode.DUTY, Mode.POSITION})
@@ -26,17 +25,11 @@ class FeetechDrive(ActuatorDrive[FeetechActuator]):
     def __init__(self, settings: FeetechSettings, joint: JointScale) -> None:
         answer_s = ServoBus.longest_call_s(settings.answer_timeout_s)
         family = Family(settings.device, "Feetech", _MODES, "", None, answer_s, _OPENING_QUESTIONS * answer_s)
-        super().__init__(family, joint, lambda: _opened(settings, joint), exchange_all)
-
-
-def _opened(settings: FeetechSettings, joint: JointScale) -> FeetechActuator:
-    return on_line(
-        settings.port,
-        settings.baud_rate,
-        settings.answer_timeout_s,
-        SCS,
-        lambda bus, leave: FeetechActuator(bus, settings, joint, leave),
-    )
+        super().__init__(
+            family,
+            joint,
+            lambda: on_line(settings, SCS, lambda bus, leave: FeetechActuator(bus, settings, joint, leave)),
+        )
 
 
 def follow(settings: FeetechSettings, joint: JointScale, link: Path, period_s: float) -> ServoFollower:
@@ -51,14 +44,10 @@ def follow(settings: FeetechSettings, joint: JointScale, link: Path, period_s: f
     Raises:
         DriveError: the port is not there or in use, nobody answers, or it is another servo than the rig's.
     """
-    line = settings.port, settings.baud_rate, settings.answer_timeout_s, SCS, settings.servo_id
-    number = number_of(*line, memory.MODEL_NUMBER)
-    name = memory.MODELS.get(number)
-    if name is None:
-        raise unknown_model(settings.device, number)
+    name = asked_model(settings, SCS, memory.MODEL_NUMBER, memory.MODELS)
     check_counts(settings.device, name, memory.COUNTS_PER_TURN, joint)
     turns = Turns(memory.COUNTS_PER_TURN)
-    relay = ServoRelay(*line, memory.PIECE, link, period_s)
     return ServoFollower(
-        relay, f"Feetech {name}", settings.device, lambda data, asked_s: reading_of(data, asked_s, turns), joint
-    )
+        settings, SCS, memory.PIECE, link, period_s, f"Feetech {name}",
+        lambda data, asked_s: reading_of(data, asked_s, turns), joint,
+    )  # fmt: skip

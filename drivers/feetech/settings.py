@@ -1,28 +1,24 @@
 """What has to be known of a Feetech servo before it is opened."""
 
-from dataclasses import dataclass
+from typing import Literal
+
+from drivers.settings import Settings, quantity
+
+BaudRate = Literal[38400, 57600, 76800, 115200, 128_000, 250_000, 500_000, 1_000_000]
 
 
-@dataclass(frozen=True, slots=True)
-class FeetechSettings:
-    """How to reach one servo.
+class FeetechSettings(Settings):
+    """How to reach one servo."""
 
-    Attributes:
-        port: serial port ("/dev/ttyACM0").
-        baud_rate: of the line.
-        servo_id: 0 .. 253.
-        accept_no_watchdog: True where the user knows that the servo goes on with the last demand when the host falls
-            silent; it is not opened otherwise.
-        torque_limit: highest share of its torque that the servo gives, 0 .. 1, set in its memory until power-off.
-        answer_timeout_s: longest wait for one answer [s].
-    """
-
-    port: str
-    baud_rate: int = 1_000_000
-    servo_id: int = 1
-    accept_no_watchdog: bool = False
-    torque_limit: float = 1.0
-    answer_timeout_s: float = 0.05
+    port: str = quantity(..., "", "Serial port, such as /dev/ttyACM0", min_length=1)
+    baud_rate: BaudRate = quantity(1_000_000, "", "Baud rate of the line")
+    servo_id: int = quantity(1, "", "Id of the servo", ge=0, le=253)
+    accept_no_watchdog: bool = quantity(
+        False, "", "true: it is known that the motor goes on with the last demand where this computer falls silent"
+    )
+    # in its memory until power-off
+    torque_limit: float = quantity(1.0, "", "Highest share of its torque, set in the servo", gt=0, le=1)
+    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.002, le=1.0)
 
     @property
     def device(self) -> str:

@@ -6,17 +6,17 @@ from math import nan, pi
 from time import perf_counter
 from typing import Protocol
 
-from drivers.actuator.actuator import OnSharedBus
+from drivers.actuator.actuator import Actuator
 from drivers.actuator.open_buses import check_alone
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.can_bus.port import CanPort, Heard
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, DriveConnectionError
-from drivers.host_time import host_was_away
+from drivers.host_time import ATTEMPTS, no_answer
 from drivers.joint import JointScale
 from drivers.mit.frames import Frame, Motion, Ranges
+from drivers.polled_drive import Identity
 
-ATTEMPTS = 2
 _MARGIN = 0.02  # of the range of positions, within which the next turn may be lost
 NO_CURRENT = (
     "it tells its torque, and no current: where a current is shown, it is that over motor.torque_constant_n_m_a"
@@ -35,7 +35,7 @@ class MitSettings(Protocol):
         """Longest wait for one answer [s]."""
 
 
-class MitActuator(OnSharedBus):
+class MitActuator(Actuator):
     """What actuators of every vendor do alike; a kind says what its frames are.
 
     Args:
@@ -58,6 +58,7 @@ class MitActuator(OnSharedBus):
     bits = (16, 12, 12)
     temperature_step_c = 1.0
     identity: Identity
+    bus: CanPort
     ranges: Ranges
     enable: Frame
     disable: Frame
@@ -117,10 +118,27 @@ class MitActuator(OnSharedBus):
         """Disable it."""
         self.told(self.disable)
 
-    def exchange(self, mode: Mode, value: float) -> Reading:
-        """Send the torque, or the question that moves nothing, and take the answer."""
-        [reading] = exchange_all([(self, mode, value)])
-        return reading
+    @staticmethod
+    def exchange_all(demands: Sequence[tuple["MitActuator", Mode, float]]) -> list[Reading]:
+        """Send every torque, then wait for all answers.
+
+        Raises:
+            DriveConnectionError: one of them does not answer.
+            DriveConfigurationError: a torque is beyond the range of its frame; what was before it has been sent.
+        """
+        first = demands[0][0]
+        bus, asked_s = first.bus, perf_counter()
+        for _ in range(ATTEMPTS):
+            before = {one.answer_id: bus.number(one.answer_id) for one, _, _ in demands}
+            for actuator, mode, value in demands:
+                actuator.tell(mode, value)
+            missing = bus.wait_beyond(before, first.answer_timeout_s)
+            if not missing:
+                return [actuator.reading(asked_s) for actuator, _, _ in demands]
+            for actuator, _, _ in demands:
+                actuator.missed()
+        silent = next(actuator for actuator, _, _ in demands if actuator.answer_id in missing)
+        raise silent.no_answer("feedback", asked_s)
 
     def braking(self) -> tuple[Mode, float]:
         """A torque of 0 with damping: the whole torque at the highest speed."""
@@ -201,13 +219,8 @@ class MitActuator(OnSharedBus):
 
     def no_answer(self, what: str, began_s: float) -> DriveConnectionError:
         """An answer has not come."""
-        longest_s = ATTEMPTS * self.answer_timeout_s
-        away = host_was_away(perf_counter() - began_s, longest_s, self.answer_timeout_s)
-        return DriveConnectionError(
-            self.device,
-            f"{what}: found no answer within {self.answer_timeout_s:g} s, asked {ATTEMPTS} times at most; check the "
-            f"cable, the power, {self.addresses()} and the bit rate{away}",
-        )
+        check = f"{self.addresses()} and the bit rate"
+        return no_answer(self.device, f"{what}: found no answer", check, self.answer_timeout_s, began_s)
 
 
 def reading_of(
@@ -218,28 +231,6 @@ def reading_of(
         asked_s, found.position_rad * counts_rad, found.speed_rad_s * counts_rad, nan, nan, found.torque_n_m, nan,
         temperature_c, is_on, fault,
     )  # fmt: skip
-
-
-def exchange_all(demands: Sequence[tuple[MitActuator, Mode, float]]) -> list[Reading]:
-    """Send every torque, then wait for all answers.
-
-    Raises:
-        DriveConnectionError: one of them does not answer.
-        DriveConfigurationError: a torque is beyond the range of its frame; what was before it has been sent.
-    """
-    first = demands[0][0]
-    bus, asked_s = first.bus, perf_counter()
-    for _ in range(ATTEMPTS):
-        before = {one.answer_id: bus.number(one.answer_id) for one, _, _ in demands}
-        for actuator, mode, value in demands:
-            actuator.tell(mode, value)
-        missing = bus.wait_beyond(before, first.answer_timeout_s)
-        if not missing:
-            return [actuator.reading(asked_s) for actuator, _, _ in demands]
-        for actuator, _, _ in demands:
-            actuator.missed()
-    silent = next(actuator for actuator, _, _ in demands if actuator.answer_id in missing)
-    raise silent.no_answer("feedback", asked_s)
 
 
 def chosen_ranges(device: str, model: str, models: Mapping[str, Ranges], written: tuple[float, float, float]) -> Ranges:

@@ -4,12 +4,11 @@ from drivers.contract import Description
 from drivers.host_time import CycleTime, Lateness
 from drivers.joint import JointScale
 from drivers.modbus.link import Link
-from drivers.modbus.opening import UNKNOWN
 from drivers.modbus.register_map import RegisterMap
 from drivers.modbus.sampling import Sampling
 from drivers.modbus.session import ENABLING_S, Session
 from drivers.modbus.settings import ModbusSettings
-from drivers.polled_drive import PolledDrive
+from drivers.polled_drive import Identity, PolledDrive
 
 _OPENING_REQUESTS = 24
 
@@ -40,16 +39,13 @@ def _describe(
     cycle: CycleTime | None,
 ) -> Description:
     """Identity and capabilities; rate, firmware and serial number are known once it is open."""
-    identity = UNKNOWN if session is None else session.identity
+    family = register_map.identity
+    identity = Identity(family.vendor, family.product) if session is None else session.identity
     sampling, link_s = Sampling(register_map, joint), Link.longest_call_s(settings)
     notes = () if session is None or cycle is None else (*session.notes, cycle.note)
     return Description(
         device=settings.device,
-        vendor=register_map.identity.vendor,
-        product=identity.product or register_map.identity.product,
-        firmware=identity.firmware,
-        serial=identity.serial,
-        simulated=identity.simulated,
+        **identity._asdict(),
         modes=register_map.modes,
         measured=sampling.measured,
         resolution=sampling.resolution,

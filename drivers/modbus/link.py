@@ -11,14 +11,13 @@ from pymodbus.exceptions import ModbusException
 from pymodbus.pdu import ModbusPDU
 
 from drivers.errors import DriveConnectionError, DriveStateError
-from drivers.host_time import host_was_away
+from drivers.host_time import ATTEMPTS, no_answer
 from drivers.modbus.blocks import Block, blocks
 from drivers.modbus.client import QuickSerialClient
 from drivers.modbus.register import Register, Space, Text
 from drivers.modbus.register_map import WRITE_ONE, WRITE_SEVERAL
 from drivers.modbus.settings import ModbusSettings
 
-ATTEMPTS = 2
 RESYNC_S = 0.005  # at least; more than 3.5 characters of silence: whoever listens starts anew
 _REFUSALS = {
     1: "the drive does not know this function",
@@ -187,12 +186,9 @@ class Link:
         )
 
     def _no_answer(self, found: str, block: Block, began_s: float) -> DriveConnectionError:
-        away = host_was_away(time.perf_counter() - began_s, self._limit_s, self._settings.answer_timeout_s)
-        return DriveConnectionError(
-            self._device,
-            f"{_place(block)}: found {found} within {self._settings.answer_timeout_s:g} s, asked {ATTEMPTS} times at "
-            f"most; check the cable, the power, the unit ({self._unit}) and the line's settings{away}",
-        )
+        timeout_s, check = self._settings.answer_timeout_s, f"the unit ({self._unit}) and the line's settings"
+        rest_s = _longest_attempt_s(self._settings) - timeout_s
+        return no_answer(self._device, f"{_place(block)}: found {found}", check, timeout_s, began_s, rest_s)
 
 
 def _longest_attempt_s(settings: ModbusSettings) -> float:

@@ -1,28 +1,15 @@
 """What is settled with a drive before anything moves: who it is, its current limit, and that it minds its host."""
 
-from typing import NamedTuple
-
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveStateError, WatchdogError
 from drivers.modbus.blocks import blocks
 from drivers.modbus.link import Link
 from drivers.modbus.register import Register
 from drivers.modbus.register_map import RegisterMap
 from drivers.modbus.settings import ModbusSettings
+from drivers.polled_drive import Identity
 
 
-class Found(NamedTuple):
-    """What the drive says of itself."""
-
-    product: str
-    firmware: str
-    serial: str
-    simulated: bool
-
-
-UNKNOWN = Found("", "", "", simulated=False)
-
-
-def identify(link: Link, register_map: RegisterMap, device: str) -> Found:
+def identify(link: Link, register_map: RegisterMap, device: str) -> Identity:
     """Compare the drive with its map, and ask who it is.
 
     Raises:
@@ -40,8 +27,8 @@ def identify(link: Link, register_map: RegisterMap, device: str) -> Found:
             )
     firmware = "" if identity.firmware is None else f"{link.read_one(identity.firmware):g}"
     serial = "" if identity.serial is None else f"{link.read_one(identity.serial):.0f}"
-    product = identity.product if identity.product_text is None else link.read_text(identity.product_text)
-    return Found(product, firmware, serial, "simulated" in product.lower())
+    told = identity.product if identity.product_text is None else link.read_text(identity.product_text)
+    return Identity(identity.vendor, told or identity.product, firmware, serial, "simulated" in told.lower())
 
 
 def set_watchdog(link: Link, register_map: RegisterMap, settings: ModbusSettings) -> None:

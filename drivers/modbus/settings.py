@@ -1,48 +1,47 @@
 """What has to be known of a drive on Modbus before it is opened."""
 
-from dataclasses import dataclass
 from typing import Literal
+
+from drivers.settings import Settings, quantity
 
 _SILENT_CHARACTERS = 3.5  # MODBUS over serial line V1.02, 2.5.1.1
 _DATA_BITS = 8
 
 
-@dataclass(frozen=True, slots=True)
-class ModbusSettings:
-    """How to reach one drive.
+class ModbusSettings(Settings):
+    """How to reach one drive."""
 
-    Attributes:
-        map: name of a register map that comes with the package, or the path of a .toml file.
-        transport: "rtu" on a serial line, "tcp" on a network.
-        port: serial port, or TCP port of the host.
-        host: name or address; "tcp" only.
-        unit: address of the drive on the line, 1 .. 247; on TCP as the drive or its gateway wants it.
-        baud_rate, parity, stop_bits: of the serial line.
-        watchdog_s: silence after which the drive stops by itself [s].
-        watchdog_is_set_in_drive: True where the map has no register for it, and somebody has set it with the drive's
-            own tools; it cannot be verified then.
-        answer_timeout_s: longest wait for one answer [s].
-        slow_every: cycles between two requests for what changes slowly, where it takes requests of its own.
-        silence_s: rest of the line between an answer and the next request [s]; None: 3.5 characters ("rtu" only).
-        echo: True where the serial adapter hears what it sends.
-        current_limit_a: highest motor current [A], set in the drive; None: the drive's own.
-    """
-
-    map: str
-    transport: Literal["rtu", "tcp"]
-    port: str
-    host: str = "127.0.0.1"
-    unit: int = 1
-    baud_rate: int = 115200
-    parity: Literal["N", "E", "O"] = "N"
-    stop_bits: Literal[1, 2] = 1
-    watchdog_s: float = 0.2
-    watchdog_is_set_in_drive: bool = False
-    answer_timeout_s: float = 0.05
-    slow_every: int = 10
-    silence_s: float | None = None
-    echo: bool = False
-    current_limit_a: float | None = None
+    map: str = quantity(..., "", "Register map: a name that comes with the package, or a .toml file", min_length=1)
+    transport: Literal["rtu", "tcp"] = quantity("rtu", "", "'rtu': serial line; 'tcp': network")
+    port: str = quantity(..., "", "Serial port, such as /dev/ttyUSB0; or the TCP port", min_length=1)
+    host: str = quantity("127.0.0.1", "", "Name or address of the drive; 'tcp' only")
+    unit: int = quantity(1, "", "Address of the drive on the line", ge=0, le=247)  # on TCP as its gateway wants it
+    baud_rate: int = quantity(115200, "", "Baud rate of the line", ge=1200, le=4_000_000)
+    parity: Literal["N", "E", "O"] = quantity("N", "", "Parity of the line")
+    stop_bits: Literal[1, 2] = quantity(1, "", "Stop bits of the line")
+    watchdog_s: float = quantity(0.2, "s", "Silence after which the drive stops by itself", gt=0, le=2.0)
+    watchdog_is_set_in_drive: bool = quantity(
+        False, "", "True where the map has no watchdog register, and it was set and tried with the drive's own tools"
+    )
+    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.005, le=1.0)
+    slow_every: int = quantity(
+        10,
+        "cycles",
+        "Cycles between requests for what changes slowly, where it takes requests of its own",
+        ge=1,
+        le=100,
+    )
+    silence_s: float | None = quantity(
+        None,
+        "s",
+        "Rest of the line between an answer and the next request; left out: 3.5 characters",
+        ge=0,
+        le=0.1,
+    )
+    echo: bool = quantity(False, "", "True where the serial adapter hears what it sends itself (two-wire RS-485)")
+    current_limit_a: float | None = quantity(
+        None, "A", "Highest motor current, set in the drive by the map's [limits]; left out: the drive's own", gt=0
+    )
 
     @property
     def device(self) -> str:

@@ -3,15 +3,16 @@
 from collections.abc import Callable, Sequence
 from time import perf_counter
 
-from drivers.actuator.actuator import OnSharedBus
+from drivers.actuator.actuator import Actuator
 from drivers.actuator.open_buses import check_alone
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveStateError, WatchdogError
 from drivers.joint import JointScale
 from drivers.moteus.frames import POSITION, Frames, fault_name, reading_of, registers, state, text_of
 from drivers.moteus.opening import Line
 from drivers.moteus.settings import MoteusSettings
+from drivers.polled_drive import Identity
 
 _BEGIN_S = 1.0  # longest wait until it drives
 _ANSWER_POLLS = 30  # of its console
@@ -20,7 +21,7 @@ TIMEOUT_MODE = "servo.timeout_mode"
 SIMULATED_SERIAL = "4c415445-53494d55-00000000"  # of our own simulated device
 
 
-class MoteusActuator(OnSharedBus):
+class MoteusActuator(Actuator):
     """A controller, opened: stopped, and told to be off where its watchdog runs out.
 
     Args:
@@ -38,6 +39,7 @@ class MoteusActuator(OnSharedBus):
         {"time_s", "position_rad", "velocity_rad_s", "current_a", "torque_n_m", "supply_v", "temperature_c"}
     )
     notes: tuple[str, ...] = ()
+    bus: Line
 
     def __init__(self, line: Line, settings: MoteusSettings, joint: JointScale, leave: Callable[[], None]) -> None:
         self.bus = line
@@ -83,10 +85,17 @@ class MoteusActuator(OnSharedBus):
         """Stop: the driver is off."""
         self._ask(self._frames.stop, "stop")
 
-    def exchange(self, mode: Mode, value: float) -> Reading:
-        """Send the torque, or the question alone, and take the answer."""
-        [reading] = exchange_all([(self, mode, value)])
-        return reading
+    @staticmethod
+    def exchange_all(demands: Sequence[tuple["MoteusActuator", Mode, float]]) -> list[Reading]:
+        """Send every torque and question, then wait for all answers.
+
+        Raises:
+            DriveConnectionError: one of them does not answer.
+        """
+        asked_s = perf_counter()
+        questions = {one.servo_id: one.question(mode, value) for one, mode, value in demands}
+        answers = demands[0][0].bus.ask(questions, "registers")
+        return [one.reading(answers[one.servo_id], asked_s) for one, _, _ in demands]
 
     def braking(self) -> tuple[Mode, float]:
         """Its brake: the windings shorted."""
@@ -180,15 +189,3 @@ class MoteusActuator(OnSharedBus):
 
     def _ask(self, data: bytes, what: str) -> bytes:
         return self.bus.ask({self.servo_id: data}, what)[self.servo_id]
-
-
-def exchange_all(demands: Sequence[tuple[MoteusActuator, Mode, float]]) -> list[Reading]:
-    """Send every torque and question, then wait for all answers.
-
-    Raises:
-        DriveConnectionError: one of them does not answer.
-    """
-    asked_s = perf_counter()
-    questions = {one.servo_id: one.question(mode, value) for one, mode, value in demands}
-    answers = demands[0][0].bus.ask(questions, "registers")
-    return [one.reading(answers[one.servo_id], asked_s) for one, _, _ in demands]

@@ -8,10 +8,9 @@ import can
 from drivers.can_bus.port import EXTENDED, CanPort
 from drivers.can_bus.settings import BusSettings
 from drivers.errors import DriveConnectionError
-from drivers.host_time import host_was_away
+from drivers.host_time import ATTEMPTS, no_answer
 from drivers.moteus.text import padded
 
-ATTEMPTS = 2
 HOST = 0  # id of this host
 _LONGEST_PLAIN = 0x7FF  # of identifiers of 11 bits
 
@@ -56,13 +55,9 @@ class MoteusCanLine:
             missing = self._port.wait_beyond(before, self._timeout_s)
             if not missing:
                 return {servo_id: self._data(can_id) for can_id, servo_id in answers.items()}
-        away = host_was_away(time.perf_counter() - began_s, ATTEMPTS * self._timeout_s, self._timeout_s)
         silent = ", ".join(str(answers[can_id]) for can_id in missing)
-        raise DriveConnectionError(
-            f"{self._name} servo {silent}",
-            f"{what}: found no answer within {self._timeout_s:g} s, asked {ATTEMPTS} times at most; check the cable, "
-            f"the power, servo_id, termination and the bit rates (1 and 5 Mbit/s){away}",
-        )
+        check = "servo_id, termination and the bit rates (1 and 5 Mbit/s)"
+        raise no_answer(f"{self._name} servo {silent}", f"{what}: found no answer", check, self._timeout_s, began_s)
 
     def listen(self, questions: Mapping[int, bytes], wait_s: float) -> list[tuple[int, bytes]]:
         """Ask some controllers, of which any may not be there, or twice; every answer that comes within a time [s].

@@ -28,7 +28,7 @@ class MoteusDrive(ActuatorDrive[Any]):  # of MoteusActuator, which is imported w
 
     def __init__(self, settings: MoteusSettings, joint: JointScale) -> None:
         try:
-            from drivers.moteus.actuator import MoteusActuator, exchange_all
+            from drivers.moteus.actuator import MoteusActuator
         except ImportError as error:
             raise DriveConfigurationError(
                 settings.device, f"mjbots' library is wanted ({error}): pip install 'friction-bench[moteus]'"
@@ -39,10 +39,7 @@ class MoteusDrive(ActuatorDrive[Any]):  # of MoteusActuator, which is imported w
             _OPENING_QUESTIONS * answer_s,
         )  # fmt: skip
         super().__init__(
-            family,
-            joint,
-            lambda: on_line(settings, lambda line, leave: MoteusActuator(line, settings, joint, leave)),
-            exchange_all,
+            family, joint, lambda: on_line(settings, lambda line, leave: MoteusActuator(line, settings, joint, leave))
         )
 
 

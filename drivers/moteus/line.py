@@ -3,12 +3,10 @@
 import time
 from collections.abc import Mapping
 
-from drivers.errors import DriveConnectionError
-from drivers.host_time import host_was_away
+from drivers.host_time import ATTEMPTS, no_answer
 from drivers.moteus.text import LONGEST_LINE, received, send_line
 from drivers.serial_port import SerialPort
 
-ATTEMPTS = 2
 _BAUD_RATE = 921_600  # of the UART; an adapter on USB does not mind
 _RESYNC_S = 0.005
 _MOST_BYTES = 1 << 16  # a line that babbles must not hold the loop
@@ -57,13 +55,10 @@ class MoteusLine:
                 return answers
             self._heard = b""
             self._port.rest(_RESYNC_S)
-        longest_s = ATTEMPTS * (self._timeout_s + _RESYNC_S)
-        away = host_was_away(time.perf_counter() - began_s, longest_s, self._timeout_s)
         silent = ", ".join(str(servo_id) for servo_id in sorted(missing - set(answers)))
-        raise DriveConnectionError(
-            f"{self._name} servo {silent}",
-            f"{what}: found no answer within {self._timeout_s:g} s, asked {ATTEMPTS} times at most; check the cable, "
-            f"the power, servo_id, over_uart and the bit rates (1 and 5 Mbit/s){away}",
+        check = "servo_id, over_uart and the bit rates (1 and 5 Mbit/s)"
+        raise no_answer(
+            f"{self._name} servo {silent}", f"{what}: found no answer", check, self._timeout_s, began_s, _RESYNC_S
         )
 
     def tell(self, servo_id: int, data: bytes) -> None:

@@ -5,26 +5,26 @@ from math import nan
 from struct import Struct
 from time import perf_counter
 
-from drivers.actuator.actuator import OnSharedBus
+from drivers.actuator.actuator import Actuator
 from drivers.actuator.open_buses import check_alone
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.can_bus.port import CanPort, prepare
 from drivers.contract import Mode
 from drivers.errors import DriveConnectionError, DriveStateError, WatchdogError
-from drivers.host_time import host_was_away
+from drivers.host_time import ATTEMPTS, no_answer
 from drivers.joint import JointScale
 from drivers.odrive import protocol
 from drivers.odrive.protocol import Command, can_id, error_names
 from drivers.odrive.settings import OdriveSettings
+from drivers.polled_drive import Identity
 
 _QUICK = (Command.GET_ENCODER_ESTIMATES, Command.GET_IQ, Command.GET_ERROR)
 _SLOW = (Command.GET_BUS, Command.GET_TEMPERATURE)
-_ATTEMPTS = 2
 STATE_S = 1.0  # longest wait for a change of state, and for the heartbeat that shows it
 SIMULATED = 255  # "unreleased" of our own simulated device
 
 
-class OdriveActuator(OnSharedBus):
+class OdriveActuator(Actuator):
     """An axis, opened: idle, its errors seen.
 
     Args:
@@ -40,6 +40,7 @@ class OdriveActuator(OnSharedBus):
     modes = frozenset({Mode.TORQUE})
     measured = frozenset({"time_s", "position_rad", "velocity_rad_s", "current_a", "supply_v", "temperature_c"})
     notes: tuple[str, ...] = ()
+    bus: CanPort
 
     def __init__(self, port: CanPort, settings: OdriveSettings, joint: JointScale, leave: Callable[[], None]) -> None:
         self.bus = port
@@ -113,10 +114,23 @@ class OdriveActuator(OnSharedBus):
                     self._settings.device, "no heartbeat that says that it is idle; check cable, power and node_id"
                 )
 
-    def exchange(self, mode: Mode, value: float) -> Reading:
-        """Send the torque, ask for the rest, and wait for it."""
-        [reading] = exchange_all([(self, mode, value)])
-        return reading
+    @staticmethod
+    def exchange_all(demands: Sequence[tuple["OdriveActuator", Mode, float]]) -> list[Reading]:
+        """Send every torque and every question, then wait for all answers.
+
+        Raises:
+            DriveConnectionError: one of them does not answer.
+        """
+        bus, settings = demands[0][0].bus, demands[0][0]._settings
+        asked_s = perf_counter()
+        for _ in range(ATTEMPTS):
+            before: dict[int, int] = {}
+            for axis, mode, value in demands:
+                before |= axis.tell(mode, value)
+            missing = bus.wait_beyond(before, settings.answer_timeout_s)
+            if not missing:
+                return [axis.reading(asked_s) for axis, _, _ in demands]
+        raise _silent(settings, missing, asked_s)
 
     def braking(self) -> tuple[Mode, float]:
         """A torque of 0: friction brakes."""
@@ -184,14 +198,14 @@ class OdriveActuator(OnSharedBus):
 
     def _ask(self, command: Command) -> bytes:
         """One question, asked twice where it is not answered."""
-        identifier = can_id(self._settings.node_id, command)
-        for _ in range(_ATTEMPTS):
+        identifier, began_s = can_id(self._settings.node_id, command), perf_counter()
+        for _ in range(ATTEMPTS):
             before = {identifier: self.bus.number(identifier)}
             self.bus.send(identifier, remote=True)
             if not self.bus.wait_beyond(before, self._settings.answer_timeout_s):
                 break
         else:
-            raise no_answer(self._settings, [identifier], perf_counter(), self._settings.answer_timeout_s)
+            raise _silent(self._settings, [identifier], began_s)
         heard = self.bus.last(identifier)
         return b"" if heard is None else heard.data.ljust(8, b"\0")
 
@@ -211,32 +225,8 @@ class OdriveActuator(OnSharedBus):
         self.bus.send(can_id(self._settings.node_id, command), data)
 
 
-def exchange_all(demands: Sequence[tuple[OdriveActuator, Mode, float]]) -> list[Reading]:
-    """Send every torque and every question, then wait for all answers.
-
-    Raises:
-        DriveConnectionError: one of them does not answer.
-    """
-    bus, settings = demands[0][0].bus, demands[0][0]._settings
-    asked_s = perf_counter()
-    for attempt in range(_ATTEMPTS):
-        before: dict[int, int] = {}
-        for axis, mode, value in demands:
-            before |= axis.tell(mode, value)
-        missing = bus.wait_beyond(before, settings.answer_timeout_s)
-        if not missing:
-            return [axis.reading(asked_s) for axis, _, _ in demands]
-        if attempt + 1 == _ATTEMPTS:
-            raise no_answer(settings, missing, asked_s, _ATTEMPTS * settings.answer_timeout_s)
-    raise AssertionError
-
-
-def no_answer(settings: OdriveSettings, missing: list[int], began_s: float, longest_s: float) -> DriveConnectionError:
+def _silent(settings: OdriveSettings, missing: list[int], began_s: float) -> DriveConnectionError:
     """Some answers have not come."""
-    away = host_was_away(perf_counter() - began_s, longest_s, settings.answer_timeout_s)
     names = ", ".join(f"{Command(one & 31).name} of node {one >> 5}" for one in missing)
-    return DriveConnectionError(
-        settings.device,
-        f"{names}: found no answer within {settings.answer_timeout_s:g} s, asked {_ATTEMPTS} times at most; check the "
-        f"cable, the power, node_id and the bit rate{away}",
-    )
+    check = "node_id and the bit rate"
+    return no_answer(settings.device, f"{names}: found no answer", check, settings.answer_timeout_s, began_s)

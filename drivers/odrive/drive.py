@@ -10,7 +10,7 @@ from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale
 from drivers.odrive import protocol
-from drivers.odrive.actuator import STATE_S, OdriveActuator, exchange_all
+from drivers.odrive.actuator import STATE_S, OdriveActuator
 from drivers.odrive.protocol import Command, can_id
 from drivers.odrive.settings import OdriveSettings
 
@@ -29,7 +29,7 @@ class OdriveDrive(ActuatorDrive[OdriveActuator]):
             settings.device, "ODrive", _MODES, "watchdog", settings.watchdog_s, answer_s + STATE_S,
             _OPENING_QUESTIONS * answer_s,
         )  # fmt: skip
-        super().__init__(family, joint, lambda: _opened(settings, joint), exchange_all)
+        super().__init__(family, joint, lambda: _opened(settings, joint))
 
 
 def _opened(settings: OdriveSettings, joint: JointScale) -> OdriveActuator:

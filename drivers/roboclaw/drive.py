@@ -3,9 +3,9 @@
 from drivers.contract import Description, Mode
 from drivers.host_time import CycleTime, Lateness
 from drivers.joint import JointScale
-from drivers.polled_drive import PolledDrive
+from drivers.polled_drive import Identity, PolledDrive
 from drivers.roboclaw.link import Link
-from drivers.roboclaw.opening import UNKNOWN
+from drivers.roboclaw.opening import VENDOR
 from drivers.roboclaw.session import Session
 from drivers.roboclaw.settings import RoboclawSettings
 
@@ -32,16 +32,12 @@ class RoboclawDrive(PolledDrive[Session]):
 
 def _describe(settings: RoboclawSettings, session: Session | None, cycle: CycleTime | None) -> Description:
     """Identity and capabilities; what only the controller knows is empty until it is open."""
-    identity = UNKNOWN if session is None else session.identity
+    identity = Identity(VENDOR, "") if session is None else session.identity
     telemetry, link_s = None if session is None else session.telemetry, Link.longest_call_s(settings)
     notes = () if session is None or cycle is None else (*session.notes, cycle.note)
     return Description(
         device=settings.device,
-        vendor="Basicmicro",
-        product=identity.product,
-        firmware=identity.firmware,
-        serial="",
-        simulated=identity.simulated,
+        **identity._asdict(),
         modes=_MODES,
         measured=frozenset() if telemetry is None else telemetry.measured,
         resolution={} if telemetry is None else telemetry.resolution,

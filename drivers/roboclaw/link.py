@@ -3,14 +3,13 @@
 import time
 
 from drivers.errors import DriveConnectionError
-from drivers.host_time import host_was_away
+from drivers.host_time import ATTEMPTS, no_answer
 from drivers.roboclaw.commands import ACKNOWLEDGED, CRC_BYTES, LONGEST_VERSION_BYTES, Read, Write
 from drivers.roboclaw.frames import VERSION_END, crc16, is_intact, read_packet, version_packet, write_packet
 from drivers.roboclaw.settings import RoboclawSettings
 from drivers.serial_port import SerialPort
 
 RESYNC_S = 0.012  # the controller forgets half a packet after 10 ms of silence
-ATTEMPTS = 2
 
 
 class Link:
@@ -146,13 +145,8 @@ class Link:
         return time.perf_counter() < self._deadline_s
 
     def _no_answer(self, meaning: str, found: str, began_s: float) -> DriveConnectionError:
-        longest_s = ATTEMPTS * (self._timeout_s + RESYNC_S)
-        away = host_was_away(time.perf_counter() - began_s, longest_s, self._timeout_s)
-        return DriveConnectionError(
-            self._device,
-            f"{meaning}: found {found} within {self._timeout_s:g} s, asked {ATTEMPTS} times at most; check the cable, "
-            f"the power, the address ({self._address:#x}) and the baud rate{away}",
-        )
+        check = f"the address ({self._address:#x}) and the baud rate"
+        return no_answer(self._device, f"{meaning}: found {found}", check, self._timeout_s, began_s, RESYNC_S)
 
 
 def _seen(reply: bytes, wanted_bytes: int) -> str:

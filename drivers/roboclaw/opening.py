@@ -1,9 +1,9 @@
 """What is settled with a controller before anything moves: who it is, its current limit, and that it minds its host."""
 
 import re
-from typing import NamedTuple
 
 from drivers.errors import DriveConfigurationError, DriveConnectionError, WatchdogError
+from drivers.polled_drive import Identity
 from drivers.roboclaw import commands
 from drivers.roboclaw.link import Link
 from drivers.roboclaw.settings import WATCHDOG_STEP_S, RoboclawSettings
@@ -11,15 +11,7 @@ from drivers.roboclaw.settings import WATCHDOG_STEP_S, RoboclawSettings
 _VERSION = re.compile(r"(?P<product>.*roboclaw.*?)\s+v(?P<firmware>\d[\w.]*)", re.IGNORECASE)
 
 
-class Identity(NamedTuple):
-    """Product and firmware of a controller."""
-
-    product: str
-    firmware: str
-    simulated: bool
-
-
-UNKNOWN = Identity("", "", simulated=False)
+VENDOR = "Basicmicro"
 
 
 def parse_version(text: str) -> Identity | None:
@@ -27,7 +19,7 @@ def parse_version(text: str) -> Identity | None:
     found = _VERSION.match(text.strip())
     if found is None:
         return None
-    return Identity(found["product"].strip(), found["firmware"], "simulated" in text.lower())
+    return Identity(VENDOR, found["product"].strip(), found["firmware"], simulated="simulated" in text.lower())
 
 
 def identify(link: Link, device: str) -> Identity:

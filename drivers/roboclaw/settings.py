@@ -1,45 +1,47 @@
 """What has to be known of a RoboClaw before it is opened."""
 
-from dataclasses import dataclass
 from math import ceil
 from typing import Literal
 
+from drivers.settings import Settings, quantity
+
 WATCHDOG_STEP_S = 0.1  # command 14 counts in these
 
+BaudRate = Literal[2400, 9600, 19200, 38400, 57600, 115200, 230400, 460800]
 
-@dataclass(frozen=True, slots=True)
-class RoboclawSettings:
-    """How to reach one motor of one controller.
 
-    Attributes:
-        port: serial port ("/dev/ttyACM0").
-        baud_rate: of the line; ignored on USB.
-        address: 0x80 .. 0x87.
-        motor: 1 or 2.
-        watchdog_s: silence after which the controller stops the motor [s], in steps of 0.1 s.
-        answer_timeout_s: longest wait for one answer [s].
-        slow_every: cycles between two questions for status, supply voltage or temperature, in turn.
-        velocity: "drive": command 18, one question more per cycle, timed by the controller and filtered over a while
-            that the manual does not state; "none": left to the control loop, which derives it from the position.
-        current: "signed" where the controller reports the current with the sign of the motor's torque, "magnitude"
-            where it does not; then it takes the sign of the applied duty.
-        questions: "in turn": each after the answer to the one before, as the maker's own library does; "together": a
-            cycle's duty and questions in one write. The manual calls packet serial buffered and says no more; a
-            controller that does not answer them all is refused when it is opened, and with "auto" asked in turn.
-        current_limit_a: highest motor current [A], set in the controller; None: the controller's own.
-    """
+class RoboclawSettings(Settings):
+    """How to reach one motor of one controller."""
 
-    port: str
-    baud_rate: int = 115200
-    address: int = 0x80
-    motor: int = 1
-    watchdog_s: float = 0.2
-    answer_timeout_s: float = 0.05
-    slow_every: int = 4
-    velocity: Literal["drive", "none"] = "drive"
-    current: Literal["signed", "magnitude"] = "signed"
-    questions: Literal["auto", "in turn", "together"] = "auto"
-    current_limit_a: float | None = None
+    port: str = quantity(..., "", "Serial port, such as /dev/ttyACM0", min_length=1)
+    baud_rate: BaudRate = quantity(115200, "", "Baud rate of the line; ignored on USB")
+    address: int = quantity(0x80, "", "Address of the controller", ge=0x80, le=0x87)
+    motor: Literal[1, 2] = quantity(1, "", "Which of its two motors")
+    watchdog_s: float = quantity(0.2, "s", "Silence after which it stops the motor, in steps of 0.1 s", ge=0.1, le=2.0)
+    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.005, le=1.0)
+    slow_every: int = quantity(
+        4, "cycles", "Cycles between questions for status, supply voltage or temperature, in turn", ge=1, le=100
+    )
+    # the controller times its own speed, and filters it over a while that the manual does not state
+    velocity: Literal["drive", "none"] = quantity(
+        "drive",
+        "",
+        "'drive': its own, filtered speed (command 18); 'none': derived from the position, one question less",
+    )
+    # a magnitude takes the sign of the applied duty
+    current: Literal["signed", "magnitude"] = quantity(
+        "signed", "", "'magnitude' where it reports the current without the sign of the torque"
+    )
+    # in turn as the maker's own library asks; the manual calls packet serial buffered, and says no more
+    questions: Literal["auto", "in turn", "together"] = quantity(
+        "auto",
+        "",
+        "'together': a cycle's duty and questions in one write, which is quicker; 'auto': together where it answers "
+        "them all when it is opened, otherwise in turn",
+    )
+    current_limit_a: float | None = quantity(
+        None, "A", "Highest motor current, set in the controller; left out: the controller's own", gt=0, le=1000
+    )
 
     @property
     def device(self) -> str:

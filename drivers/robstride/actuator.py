@@ -5,13 +5,15 @@ from math import nan
 from struct import Struct
 from time import perf_counter
 
-from drivers.actuator.reading import Identity, Reading
+from drivers.actuator.reading import Reading
 from drivers.can_bus.port import CanPort, Heard
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError, WatchdogError
+from drivers.host_time import ATTEMPTS
 from drivers.joint import JointScale
-from drivers.mit.actuator import ATTEMPTS, MitActuator, chosen_ranges
+from drivers.mit.actuator import MitActuator, chosen_ranges
 from drivers.mit.frames import Frame
+from drivers.polled_drive import Identity
 from drivers.robstride import protocol
 from drivers.robstride.protocol import Kind, Parameter
 from drivers.robstride.settings import RobstrideSettings

@@ -7,7 +7,7 @@ from drivers.actuator.reading import Reading
 from drivers.can_bus.follower import BusFollower
 from drivers.can_bus.port import CanPort, Heard, on_bus
 from drivers.joint import JointScale
-from drivers.mit.actuator import chosen_ranges, exchange_all, reading_of
+from drivers.mit.actuator import chosen_ranges, reading_of
 from drivers.robstride import protocol
 from drivers.robstride.actuator import RobstrideActuator
 from drivers.robstride.protocol import Kind
@@ -30,7 +30,6 @@ class RobstrideDrive(ActuatorDrive[RobstrideActuator]):
             family,
             joint,
             lambda: on_bus(settings.bus, lambda port, leave: RobstrideActuator(port, settings, joint, leave)),
-            exchange_all,
         )
 
 

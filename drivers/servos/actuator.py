@@ -3,16 +3,40 @@
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from time import perf_counter
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
-from drivers.actuator.actuator import OnSharedBus
+from drivers.actuator.actuator import Actuator
 from drivers.actuator.reading import Reading
 from drivers.contract import Mode
 from drivers.servos.bus import ServoBus
 from drivers.servos.frames import Item
 
 
-class ServoActuator(OnSharedBus):
+class ServoSettings(Protocol):
+    """What the settings of every protocol have."""
+
+    @property
+    def port(self) -> str:
+        """Serial port."""
+
+    @property
+    def baud_rate(self) -> int:
+        """Of the line."""
+
+    @property
+    def servo_id(self) -> int:
+        """Of the servo."""
+
+    @property
+    def answer_timeout_s(self) -> float:
+        """Longest wait for one answer [s]."""
+
+    @property
+    def device(self) -> str:
+        """The name used in messages."""
+
+
+class ServoActuator(Actuator):
     """What the servos of every protocol do alike.
 
     Args:
@@ -25,6 +49,7 @@ class ServoActuator(OnSharedBus):
         torque_enable: the item that powers the stage.
     """
 
+    bus: ServoBus
     piece: Item
     torque_enable: Item
 
@@ -50,10 +75,22 @@ class ServoActuator(OnSharedBus):
         self._mode = Mode.OFF
         self._write(self.torque_enable, 0)
 
-    def exchange(self, mode: Mode, value: float) -> Reading:
-        """Write the goal and read the piece, in one go."""
-        [reading] = exchange_all([(self, mode, value)])
-        return reading
+    @staticmethod
+    def exchange_all(demands: Sequence[tuple["ServoActuator", Mode, float]]) -> list[Reading]:
+        """Write the goals of servos on one bus, and read the piece of each, in one go.
+
+        Raises:
+            DriveConnectionError: one of them does not answer.
+        """
+        first = demands[0][0]
+        goals: dict[int, dict[int, bytes]] = {}
+        for servo, mode, value in demands:
+            if mode is not Mode.OFF:
+                address, data = servo.goal(mode, value)
+                goals.setdefault(address, {})[servo.servo_id] = data
+        asked_s = perf_counter()
+        answers = first.bus.exchange(goals, tuple(servo.servo_id for servo, _, _ in demands), first.piece)
+        return [servo.reading(answer.data, asked_s) for (servo, _, _), answer in zip(demands, answers, strict=True)]
 
     def braking(self) -> tuple[Mode, float]:
         """A goal of 0: a duty of 0 brakes, a current of 0 does not; a position is kept."""
@@ -75,20 +112,3 @@ class ServoActuator(OnSharedBus):
 
 
 ServoT = TypeVar("ServoT", bound=ServoActuator)
-
-
-def exchange_all(demands: Sequence[tuple[ServoT, Mode, float]]) -> list[Reading]:
-    """Write the goals of servos on one bus, and read the piece of each, in one go.
-
-    Raises:
-        DriveConnectionError: one of them does not answer.
-    """
-    first = demands[0][0]
-    goals: dict[int, dict[int, bytes]] = {}
-    for servo, mode, value in demands:
-        if mode is not Mode.OFF:
-            address, data = servo.goal(mode, value)
-            goals.setdefault(address, {})[servo.servo_id] = data
-    asked_s = perf_counter()
-    answers = first.bus.exchange(goals, tuple(servo.servo_id for servo, _, _ in demands), first.piece)
-    return [servo.reading(answer.data, asked_s) for (servo, _, _), answer in zip(demands, answers, strict=True)]

@@ -3,12 +3,11 @@
 import time
 from collections.abc import Iterator
 
-from drivers.errors import DriveConnectionError, DriveStateError
-from drivers.host_time import host_was_away
+from drivers.errors import DriveStateError
+from drivers.host_time import ATTEMPTS, no_answer
 from drivers.serial_port import SerialPort
 from drivers.servos.frames import Frames, Item, StatusPacket
 
-ATTEMPTS = 2
 _ALONE_S = 0.006  # longest wait for the answer to a ping of one servo
 _ALL_S = 0.1  # of a further one, where everybody was asked
 RESYNC_S = 0.005  # no servo is in the middle of an answer by then
@@ -135,13 +134,8 @@ class ServoBus:
             self._port.rest(RESYNC_S)
             if time.perf_counter() >= self._deadline_s:
                 break
-        longest_s = ATTEMPTS * (self._timeout_s + RESYNC_S)
-        away = host_was_away(time.perf_counter() - began_s, longest_s, self._timeout_s)
-        raise DriveConnectionError(
-            self._device(*servo_ids),
-            f"{what}: found {found} within {self._timeout_s:g} s, asked {ATTEMPTS} times at most; check the cable, the "
-            f"power, the id and the baud rate ({self._baud_rate}){away}",
-        )
+        check = f"the id and the baud rate ({self._baud_rate})"
+        raise no_answer(self._device(*servo_ids), f"{what}: found {found}", check, self._timeout_s, began_s, RESYNC_S)
 
     def _apart(self, reply: bytes, servo_ids: tuple[int, ...], size: int) -> tuple[list[StatusPacket], str]:
         """The answers of some servos in a row, and what was found where one of them is missing."""

@@ -5,32 +5,25 @@ from collections.abc import Callable
 from drivers.actuator.open_buses import OpenBuses
 from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale
-from drivers.servos.actuator import ServoT
+from drivers.servos.actuator import ServoSettings, ServoT
 from drivers.servos.bus import ServoBus
 from drivers.servos.frames import Frames
 
 _BUSES: OpenBuses[ServoBus] = OpenBuses()  # servos of one line share its port
 
 
-def on_line(
-    port: str,
-    baud_rate: int,
-    timeout_s: float,
-    frames: Frames,
-    make: Callable[[ServoBus, Callable[[], None]], ServoT],
-) -> ServoT:
+def on_line(settings: ServoSettings, frames: Frames, make: Callable[[ServoBus, Callable[[], None]], ServoT]) -> ServoT:
     """A servo on a line, which is opened where no other servo has it open.
 
     Args:
-        port: "/dev/ttyUSB0".
-        baud_rate: of the line.
-        timeout_s: longest wait for one answer [s].
+        settings: which servo.
         frames: of the protocol.
         make: makes the servo of its bus and of what gives the bus back.
 
     Raises:
         DriveError: the port is not there, or the servo cannot be opened; the bus is given back then.
     """
+    port, baud_rate, timeout_s = settings.port, settings.baud_rate, settings.answer_timeout_s
     return _BUSES.lend((port, baud_rate), lambda: ServoBus(port, baud_rate, timeout_s, frames), make)
 
 

@@ -6,50 +6,58 @@ bus watchdog as well as a command does, and the silence of who commands has to s
 """
 
 import select
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from time import perf_counter
+from typing import TypeVar
 
 from drivers.actuator.reading import Reading, sample_of
 from drivers.contract import Sample, Status
 from drivers.errors import DriveConfigurationError
 from drivers.joint import JointScale
 from drivers.serial_port import SerialPort
+from drivers.servos.actuator import ServoSettings
 from drivers.servos.bus import ServoBus
 from drivers.servos.frames import Frames, Item
 from drivers.servos.offered_port import OfferedPort
 
+ModelT = TypeVar("ModelT")
 _QUIET_S = 0.002  # of the line, before a question of ours
 _OWED_S = 0.1  # longest wait for an answer to the other program: an adapter, or a busy host, may hold one back
 _ALIVE_S = 0.2  # who says nothing for longer counts as silent
 
 
-class ServoRelay:
-    """The line, opened.
+class ServoFollower:
+    """A servo that another program moves, looked at in the pauses of the line.
 
     Args:
-        port: the real port.
-        baud_rate: of the line.
-        timeout_s: longest wait for one answer [s].
+        settings: who is looked at, and on which real port.
         frames: of the protocol.
-        servo_id: who is looked at.
         piece: what is read of it.
         link: name of the port that is offered.
         period_s: from one look to the next, at least [s].
+        product: what answers.
+        reading: the piece in SI, of its bytes and when it was asked for.
+        joint: scales and signs.
 
     Raises:
         DriveConnectionError: the real port is not there, or in use.
     """
 
+    is_between = True
+
     def __init__(
-        self, port: str, baud_rate: int, timeout_s: float, frames: Frames, servo_id: int, piece: Item, link: Path,
-        period_s: float,
+        self, settings: ServoSettings, frames: Frames, piece: Item, link: Path, period_s: float, product: str,
+        reading: Callable[[bytes, float], Reading], joint: JointScale,
     ) -> None:  # fmt: skip
-        self.place = str(link)
+        servo_id, port = settings.servo_id, settings.port
+        self.product, self.device = product, settings.device
+        self.wanted = f"open {link} in the place of the real port, and leave the line a pause of 2 ms at times"
+        self._reading, self._joint = reading, joint
         self._frames, self._servo_id, self._period_s = frames, servo_id, period_s
         self._question = frames.read(servo_id, piece.address, piece.size)
         self._piece_bytes, self._answer_bytes = piece.size, frames.status_bytes + piece.size
-        self._line = SerialPort(port, port, baud_rate, timeout_s)
+        self._line = SerialPort(port, port, settings.baud_rate, settings.answer_timeout_s)
         try:
             self._other = OfferedPort(link)
         except BaseException:
@@ -64,8 +72,8 @@ class ServoRelay:
         """How long the other program has said nothing [s]."""
         return perf_counter() - self._said_s
 
-    def look(self, timeout_s: float) -> tuple[bytes, float] | None:
-        """Pass bytes on for a while [s]; the piece and when it was asked for, as soon as it was read, else None.
+    def look(self, timeout_s: float) -> Sample | None:
+        """Pass on what is said for a while [s]; return a sample as soon as one was taken, else None.
 
         Raises:
             DriveConnectionError: the real port is gone.
@@ -76,7 +84,8 @@ class ServoRelay:
             if self._is_due():
                 found = self._ask()
                 if found is not None:
-                    return found
+                    reading = self._reading(*found)
+                    return sample_of(reading, self._joint, Status.ENABLED if reading.is_on else Status.DISABLED)
         return None
 
     def close(self) -> None:
@@ -129,67 +138,27 @@ class ServoRelay:
         return None
 
 
-class ServoFollower:
-    """A servo that another program moves, through here.
+def asked_model(settings: ServoSettings, frames: Frames, item: Item, models: Mapping[int, ModelT]) -> ModelT:
+    """Ask a servo for its model, before the other program is there.
 
     Args:
-        relay: the line.
-        product: what answers.
-        device: name used in messages.
-        reading: the piece in SI, of its bytes and when it was asked for.
-        joint: scales and signs.
-    """
-
-    is_between = True
-
-    def __init__(
-        self,
-        relay: ServoRelay,
-        product: str,
-        device: str,
-        reading: Callable[[bytes, float], Reading],
-        joint: JointScale,
-    ) -> None:
-        self._relay, self._reading, self._joint = relay, reading, joint
-        self.product, self.device = product, device
-        self.wanted = f"open {relay.place} in the place of the real port, and leave the line a pause of 2 ms at times"
-
-    @property
-    def silent_s(self) -> float:
-        """How long the other program has said nothing [s]."""
-        return self._relay.silent_s
-
-    def look(self, timeout_s: float) -> Sample | None:
-        """Pass on what is said for a while [s]; return a sample as soon as one was taken, else None.
-
-        Raises:
-            DriveConnectionError: the real port is gone.
-        """
-        found = self._relay.look(timeout_s)
-        if found is None:
-            return None
-        reading = self._reading(*found)
-        return sample_of(reading, self._joint, Status.ENABLED if reading.is_on else Status.DISABLED)
-
-    def close(self) -> None:
-        """Give both ports back. Never raises."""
-        self._relay.close()
-
-
-def number_of(port: str, baud_rate: int, timeout_s: float, frames: Frames, servo_id: int, item: Item) -> int:
-    """Ask a servo for one number, before the other program is there.
+        settings: which servo.
+        frames: of the protocol.
+        item: that tells the number of the model.
+        models: by their numbers.
 
     Raises:
         DriveConnectionError: the port is not there or in use, or nobody answers.
+        DriveConfigurationError: a model whose numbers nobody here knows the meaning of.
     """
-    bus = ServoBus(port, baud_rate, timeout_s, frames)
+    bus = ServoBus(settings.port, settings.baud_rate, settings.answer_timeout_s, frames)
     try:
         bus.begin()
-        return bus.read(servo_id, item)
+        number = bus.read(settings.servo_id, item)
     finally:
         bus.close()
-
-
-def unknown_model(device: str, number: int) -> DriveConfigurationError:
-    """A servo whose numbers nobody here knows the meaning of."""
-    return DriveConfigurationError(device, f"its model number is {number}, which is not known; check servo_id")
+    if number not in models:
+        raise DriveConfigurationError(
+            settings.device, f"its model number is {number}, which is not known; check servo_id"
+        )
+    return models[number]

@@ -97,7 +97,7 @@ _READS = ((16, 7), (18, 7), (48, 6), (49, 6))
 
 
 def _opened_roboclaw(path: str, questions: Questions) -> tuple[Cycle, Cycle]:
-    settings = RoboclawSettings(path, answer_timeout_s=5.0, slow_every=NEVER, questions=questions)
+    settings = RoboclawSettings.model_construct(port=path, answer_timeout_s=5.0, slow_every=NEVER, questions=questions)
     return _opened(RoboclawDrive(settings, JOINT))
 
 
@@ -143,7 +143,7 @@ def _opened_modbus(settings: ModbusSettings) -> tuple[Cycle, Cycle]:
 def _modbus_settings(drive: dict[str, Any]) -> ModbusSettings:
     values = {name: value for name, value in drive.items() if name not in ("kind", "side_channel")}
     # without pace there are no characters to be silent for
-    return ModbusSettings(
+    return ModbusSettings.model_construct(
         **{**values, "port": str(values["port"])}, answer_timeout_s=5.0, watchdog_s=2.0, silence_s=0.0
     )
 

@@ -87,7 +87,7 @@ def answers(monkeypatch):
             return super().read(size)
 
         def opened(self):
-            drive = RoboclawDrive(RoboclawSettings("/dev/ttyACM0", questions="in turn"), JointScale(4096, 20.0))
+            drive = RoboclawDrive(RoboclawSettings(port="/dev/ttyACM0", questions="in turn"), JointScale(4096, 20.0))
             drive.open(0.01)
             return drive
 

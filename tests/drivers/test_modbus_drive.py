@@ -46,7 +46,7 @@ def made(answers):
     drives = []
 
     def make(joint=JOINT, text=MAP, **settings):
-        found = ModbusSettings("test", "tcp", answers.port, answer_timeout_s=TIMEOUT_S, **settings)
+        found = ModbusSettings(map="test", transport="tcp", port=answers.port, answer_timeout_s=TIMEOUT_S, **settings)
         drives.append(ModbusDrive(found, parse_map(text, "map"), joint))
         return drives[-1]
 
@@ -368,7 +368,7 @@ def test_nobody_listens():
         free.bind(("127.0.0.1", 0))
         port = str(free.getsockname()[1])
     with pytest.raises(DriveConnectionError, match="cannot be opened; is the drive on"):
-        ModbusDrive(ModbusSettings("test", "tcp", port), parse_map(MAP, "map"), JOINT).open(0.01)
+        ModbusDrive(ModbusSettings(map="test", transport="tcp", port=port), parse_map(MAP, "map"), JOINT).open(0.01)
 
 
 def test_calls_before_open(made):
@@ -392,7 +392,7 @@ def line():
 def test_a_request_as_the_manual_prints_it(line):
     """Roboteq GDC3660E data sheet, 2.2.1: VAR1 is asked for with 01 04 20 C1 00 02 2B F7."""
     ours, path = line
-    link = Link(ModbusSettings("roboteq", "rtu", path, answer_timeout_s=TIMEOUT_S))
+    link = Link(ModbusSettings(map="roboteq", transport="rtu", port=path, answer_timeout_s=TIMEOUT_S))
     variable = Register("var1", Space.INPUT, 0x20C1, Number.INT32)
     link.begin()
     os.write(ours, b"")
@@ -403,7 +403,7 @@ def test_a_request_as_the_manual_prints_it(line):
 
 
 def test_the_roboteq_map_has_no_demand_but_zero_to_switch_off():
-    drive = ModbusDrive(ModbusSettings("roboteq", "rtu", "/dev/absent"), load_map("roboteq"), JOINT)
+    drive = ModbusDrive(ModbusSettings(map="roboteq", transport="rtu", port="/dev/absent"), load_map("roboteq"), JOINT)
     assert drive.describe().modes == {Mode.DUTY}
     with pytest.raises(DriveConnectionError, match="is it plugged in, and not open elsewhere"):
         drive.open(0.01)
@@ -412,7 +412,7 @@ def test_the_roboteq_map_has_no_demand_but_zero_to_switch_off():
 def test_an_answer_that_comes_late_is_not_taken_for_that_of_another_request(line):
     """RTU does not number its requests; the answer to one of two registers is no answer to one of a single register."""
     ours, path = line
-    link = Link(ModbusSettings("roboteq", "rtu", path, answer_timeout_s=TIMEOUT_S))
+    link = Link(ModbusSettings(map="roboteq", transport="rtu", port=path, answer_timeout_s=TIMEOUT_S))
     link.begin()
     late, wanted = bytes.fromhex("01 04 04 00 00 00 07"), bytes.fromhex("01 04 02 00 2a")
 
@@ -448,7 +448,9 @@ ANSWER = frame("01 04 02 00 2a")
 
 
 def serial_link(path, **settings):
-    link = Link(ModbusSettings("roboteq", "rtu", path, **{"answer_timeout_s": TIMEOUT_S, **settings}))
+    link = Link(
+        ModbusSettings(map="roboteq", transport="rtu", port=path, **{"answer_timeout_s": TIMEOUT_S, **settings})
+    )
     link.begin()
     return link
 

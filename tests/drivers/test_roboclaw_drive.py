@@ -32,7 +32,7 @@ def answers(monkeypatch):
 
 
 def opened(joint=JOINT, period_s=0.01, **settings):
-    drive = RoboclawDrive(RoboclawSettings("/dev/ttyACM0", **settings), joint)
+    drive = RoboclawDrive(RoboclawSettings(port="/dev/ttyACM0", **settings), joint)
     drive.open(period_s)
     return drive
 
@@ -267,7 +267,7 @@ def test_a_wrong_address_is_named(answers):
 
 def test_a_port_that_is_not_there(answers):
     with pytest.raises(DriveConnectionError, match="could not open port /dev/absent"):
-        RoboclawDrive(RoboclawSettings("/dev/absent"), JOINT).open(0.01)
+        RoboclawDrive(RoboclawSettings(port="/dev/absent"), JOINT).open(0.01)
 
 
 def test_something_else_answers(answers):
@@ -287,7 +287,7 @@ def test_an_impossible_duty_is_not_sent(answers, value):
 
 
 def test_states(answers):
-    drive = RoboclawDrive(RoboclawSettings("/dev/ttyACM0"), JOINT)
+    drive = RoboclawDrive(RoboclawSettings(port="/dev/ttyACM0"), JOINT)
     with pytest.raises(DriveStateError, match="exchange before open"):
         drive.exchange(OFF)
     drive.open(0.01)

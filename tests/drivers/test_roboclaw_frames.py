@@ -2,10 +2,11 @@
 
 import pytest
 
+from drivers.polled_drive import Identity
 from drivers.roboclaw import commands
 from drivers.roboclaw.flags import FLAGS_16_BIT, FLAGS_32_BIT, faults
 from drivers.roboclaw.frames import crc16, is_intact, read_packet, version_packet, write_packet
-from drivers.roboclaw.opening import Identity, parse_version
+from drivers.roboclaw.opening import parse_version
 from drivers.roboclaw.telemetry import EncoderCount
 from tests.drivers.roboclaw_answers import crc
 
@@ -75,9 +76,9 @@ def test_faults_by_name_in_both_layouts():
 @pytest.mark.parametrize(
     ("text", "wanted"),
     [
-        ("USB Roboclaw 2x15a v4.1.34", Identity("USB Roboclaw 2x15a", "4.1.34", False)),
-        ("RoboClaw 10.2A v4.1.11", Identity("RoboClaw 10.2A", "4.1.11", False)),
-        ("USB Roboclaw 2x7a v4.2.8 simulated", Identity("USB Roboclaw 2x7a", "4.2.8", True)),
+        ("USB Roboclaw 2x15a v4.1.34", Identity("Basicmicro", "USB Roboclaw 2x15a", "4.1.34", simulated=False)),
+        ("RoboClaw 10.2A v4.1.11", Identity("Basicmicro", "RoboClaw 10.2A", "4.1.11", simulated=False)),
+        ("USB Roboclaw 2x7a v4.2.8 simulated", Identity("Basicmicro", "USB Roboclaw 2x7a", "4.2.8", simulated=True)),
         ("SDC2130 v1.8", None),
     ],
 )

@@ -81,7 +81,9 @@ def proven(**section):
 @pytest.mark.skipif(library() is None, reason="libmodbus is not installed (apt-get install libmodbus5)")
 def test_a_server_of_libmodbus_has_no_watchdog_and_is_not_taken_for_one_that_has():
     with libmodbus_server() as port:
-        settings = ModbusSettings("registers", "tcp", str(port), watchdog_s=0.3, answer_timeout_s=0.3)
+        settings = ModbusSettings(
+            map="registers", transport="tcp", port=str(port), watchdog_s=0.3, answer_timeout_s=0.3
+        )
         drive = ModbusDrive(settings, parse_map(REGISTERS, "map"), JointScale(4096, 20.0))
         try:
             drive.open(PERIOD_S)  # the watchdog register reads back as it was set

@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+from drivers.can_bus.settings import BusSettings
+from drivers.canopen.drive import CanopenDrive
+from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConnectionError, DriveFault
 from drivers.joint import JointScale
@@ -21,7 +23,7 @@ def sh(command: str) -> None:
 
 
 def drive_on(channel: str) -> CanopenDrive:
-    settings = CanopenSettings(BusSettings("socketcan", channel), node_id=5, watchdog_s=8.0, answer_s=5.0)
+    settings = CanopenSettings(bus=BusSettings("socketcan", channel), node_id=5, watchdog_s=8.0, answer_s=5.0)
     return CanopenDrive(settings, JointScale(4096, 20.0))
 
 

@@ -9,6 +9,7 @@ from bench.config.drives.scanning import CanScan, SerialScan
 from bench.config.drives.simulated_device import Simulate
 from bench.config.quantities import quantity
 from bench.config.rig import Rig, Section
+from bench.config.validation import kind_of
 from drivers.contract import Drive, Mode
 from drivers.follower import Follower
 
@@ -134,5 +135,4 @@ class DriveKind(Generic[SettingsT]):
     @property
     def name(self) -> str:
         """What `kind` in `[drive]` says."""
-        name: str = self.settings.model_fields["kind"].annotation.__args__[0]  # type: ignore[union-attr]
-        return name
+        return kind_of(self.settings)

@@ -1,7 +1,6 @@
 """What every real drive's settings share: signs and zero, and the joint that comes of them and the rig."""
 
-from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import model_validator
 
@@ -12,7 +11,6 @@ from bench.errors import ConfigurationError
 from drivers.joint import JointScale
 
 Sign = Literal[1, -1]
-Bitrate = Literal[10_000, 20_000, 50_000, 125_000, 250_000, 500_000, 1_000_000]
 
 
 class HomingSettings(Section):
@@ -63,11 +61,6 @@ class RealDriveSettings(DriveSettings):
     )
 
 
-def driver_values(settings: RealDriveSettings) -> dict[str, Any]:
-    """What the driver's own settings take: all but the kind, and what the joint's scale takes."""
-    return settings.model_dump(exclude=set(RealDriveSettings.model_fields))
-
-
 def joint_scale(settings: RealDriveSettings, rig: Rig) -> JointScale:
     """The joint as a drive has to know it.
 
@@ -91,28 +84,3 @@ def joint_scale(settings: RealDriveSettings, rig: Rig) -> JointScale:
         encoder_sign=settings.encoder_sign,
         zero_rad=settings.zero_rad,
     )
-
-
-class CanDriveSettings(RealDriveSettings):
-    """How a CAN bus of python-can is reached."""
-
-    interface: str = quantity(
-        ..., "", "Interface of python-can: socketcan (Linux), slcan (serial adapter), pcan, kvaser ...", min_length=1
-    )
-    channel: str = quantity(..., "", "can0, /dev/ttyACM0, PCAN_USBBUS1", min_length=1)
-    bitrate: Bitrate = quantity(1_000_000, "bit/s", "Bit rate of the bus")
-    tty_baudrate: int = quantity(
-        115200, "bit/s", "Baud rate of the serial line of an slcan adapter; ignored on USB", ge=9600
-    )
-    adapter_start_s: float = quantity(0.0, "s", "What an slcan adapter needs after its port is opened", ge=0, le=10)
-    options: dict[str, str | int | float | bool] = quantity(
-        {}, "", "What else the interface takes, as python-can's documentation of it says"
-    )
-
-
-def can_values(settings: CanDriveSettings) -> Mapping[str, Any]:
-    """What the driver's own settings take, the bus in one."""
-    from drivers.can_bus.settings import BusSettings
-
-    values = driver_values(settings)
-    return values | {"bus": BusSettings(**{name: values.pop(name) for name in CanDriveSettings.__annotations__})}

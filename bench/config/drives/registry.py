@@ -2,11 +2,10 @@
 
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Union
-
-from pydantic import Discriminator, Tag
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from bench.config.drives.kind import DriveKind, DriveSettings
+from bench.config.validation import chosen_by_kind
 from bench.errors import ConfigurationError
 
 ENTRY_POINT_GROUP = "friction_bench.drives"
@@ -79,22 +78,10 @@ def _wanted() -> str:
     return "; ".join([f"kind should be one of {', '.join(found.kinds)}", *found.broken.values()])
 
 
-def _tag(section: Any) -> str:
-    """Which of the kinds a section is; the simulated drive where it does not say."""
-    kind = section.get("kind", DEFAULT_KIND) if isinstance(section, dict) else getattr(section, "kind", "")
-    return f"tagged-{kind}"  # so that messages name the key without the tag
-
-
-def _any_settings() -> Any:
-    branches = [Annotated[kind.settings, Tag(f"tagged-{name}")] for name, kind in drive_kinds().items()]
-    chosen = Discriminator(_tag, custom_error_type="kind", custom_error_message=_wanted())
-    return Annotated[Union[tuple(branches)], chosen]  # noqa: UP007  made of a list
-
-
 if TYPE_CHECKING:
     AnyDriveSettings = DriveSettings
 else:
-    AnyDriveSettings = _any_settings()
+    AnyDriveSettings = chosen_by_kind((one.settings for one in drive_kinds().values()), _wanted(), DEFAULT_KIND)
 
 
 def default_drive_settings() -> DriveSettings:

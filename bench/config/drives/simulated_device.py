@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 from threading import Event
 from typing import Protocol, Self
 
@@ -44,3 +45,13 @@ class Simulated:
 
 Simulate = Callable[..., Simulated]
 """Takes the kind's own options, as `typer` reads them, and `options: bench.drives.device.DeviceOptions` by keyword."""
+
+
+def command_in(module: str) -> Callable[[], Simulate]:
+    """What imports the function `simulate` of a module once it is asked for: no bench needs it."""
+
+    def imported() -> Simulate:
+        command: Simulate = import_module(module).simulate
+        return command
+
+    return imported

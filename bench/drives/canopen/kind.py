@@ -1,20 +1,23 @@
 """CiA 402 drives on a CAN bus as a kind."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
-from bench.config.drives.real import driver_values, joint_scale
-from bench.config.drives.simulated_device import Simulate
+from bench.config.drives.real import joint_scale
+from bench.config.drives.simulated_device import command_in
 from bench.config.rig import Rig
-from bench.drives.canopen.settings import CanopenDriveSettings
+from bench.drives.canopen.settings import CanopenBus, CanopenDriveSettings
 from bench.errors import ConfigurationError
+from drivers.canopen.parameters import CanopenParameters
 from drivers.contract import Drive
 from drivers.follower import Follower
 
 if TYPE_CHECKING:  # imported when needed: a bench needs no library of another kind
-    from drivers.canopen import CanopenDrive, CanopenSettings
+    from drivers.canopen.drive import CanopenDrive
+    from drivers.canopen.settings import CanopenSettings
 
 
 _UNHURRIED = {"watchdog_s": 1.0, "answer_s": 0.6}
@@ -26,20 +29,18 @@ def make(settings: CanopenDriveSettings, rig: Rig) -> Drive:
     Raises:
         ConfigurationError: settings that contradict each other.
     """
-    from drivers.canopen import CanopenDrive
-    from drivers.errors import DriveConfigurationError
+    from drivers.canopen.drive import CanopenDrive
 
-    try:
+    with _refusals():
         return CanopenDrive(_driver_settings(settings, rig), joint_scale(settings, rig))
-    except DriveConfigurationError as error:
-        raise ConfigurationError(str(error)) from error
 
 
 def follow(settings: CanopenDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
     """What listens to one that another master drives.
 
     Raises:
-        ConfigurationError: a COB-ID is no number.
+        ConfigurationError: settings that contradict each other, a mapping without the position, or a COB-ID that is no
+            number.
     """
     from drivers.canopen.follow import follow
 
@@ -47,16 +48,28 @@ def follow(settings: CanopenDriveSettings, rig: Rig, _link: Path, _period_s: flo
         mappings = {int(cob_id, 0): entries for cob_id, entries in settings.tpdo_mapping.items()}
     except ValueError as error:
         raise ConfigurationError(f"drive.tpdo_mapping: {error}; a COB-ID such as '0x185' is wanted") from error
-    return follow(_driver_settings(settings, rig), joint_scale(settings, rig), mappings)
+    with _refusals():
+        return follow(_driver_settings(settings, rig), joint_scale(settings, rig), mappings)
+
+
+@contextmanager
+def _refusals() -> Iterator[None]:
+    """Settings that the driver refuses are wrong in the configuration."""
+    from drivers.errors import DriveConfigurationError
+
+    try:
+        yield
+    except DriveConfigurationError as error:
+        raise ConfigurationError(str(error)) from error
 
 
 def _driver_settings(settings: CanopenDriveSettings, rig: Rig) -> "CanopenSettings":
-    from drivers.canopen import BusSettings, CanopenSettings
-    from drivers.canopen.cia402.bits import BrakeBit, TorqueOffBit
+    from drivers.can_bus.settings import BusSettings
+    from drivers.canopen.cia402.bits import BrakeBit
     from drivers.canopen.cia402.homing import DriveHoming
+    from drivers.canopen.settings import CanopenSettings
 
-    values = driver_values(settings)
-    del values["tpdo_mapping"]
+    values = settings.model_dump(include=set(CanopenParameters.model_fields))
     if settings.brake.by == "output":
         values["brake"] = BrakeBit(settings.brake.output_bit, settings.brake.set_level)
     homing = settings.homing
@@ -64,9 +77,7 @@ def _driver_settings(settings: CanopenDriveSettings, rig: Rig) -> "CanopenSettin
         values["homing"] = DriveHoming(
             homing.drive_method, homing.speed_rad_s, homing.slow_speed_rad_s, homing.acceleration_rad_s2
         )
-    if values["torque_off"] is not None:
-        values["torque_off"] = TorqueOffBit(**values["torque_off"])
-    bus = BusSettings(**{name: values.pop(name) for name in BusSettings.__match_args__})
+    bus = BusSettings(**settings.model_dump(include=set(CanopenBus.model_fields)))
     return CanopenSettings(bus=bus, torque_constant_n_m_a=rig.motor.torque_constant_n_m_a, **values)
 
 
@@ -76,27 +87,17 @@ def share(drives: "Sequence[CanopenDrive]") -> None:
     Raises:
         ConfigurationError: two have one node ID, or their settings of the bus differ.
     """
-    from drivers.canopen import share_buses
-    from drivers.errors import DriveConfigurationError
+    from drivers.canopen.one_bus import share_buses
 
-    try:
+    with _refusals():
         share_buses(drives)
-    except DriveConfigurationError as error:
-        raise ConfigurationError(str(error)) from error
-
-
-def simulate() -> Simulate:
-    """The command that simulates one."""
-    from bench.drives.canopen.device import simulate
-
-    return simulate
 
 
 KIND = DriveKind(
     title="CiA 402 servo drive, CANopen",
     settings=CanopenDriveSettings,
     make=make,
-    simulate=simulate,
+    simulate=command_in("bench.drives.canopen.device"),
     follow=follow,
     share=share,
     conformance=(

@@ -6,55 +6,36 @@ from pathlib import Path
 from typing import Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
-from bench.config.drives.real import CanDriveSettings, can_values, joint_scale
+from bench.config.drives.real import RealDriveSettings, joint_scale
 from bench.config.drives.scanning import CanPlace, FoundDrive
-from bench.config.drives.simulated_device import Simulate
-from bench.config.quantities import quantity
+from bench.config.drives.simulated_device import command_in
 from bench.config.rig import Rig
 from drivers.contract import Drive
+from drivers.damiao.settings import DamiaoSettings
 from drivers.follower import Follower
 
 _IDS = range(1, 33)
 _ANSWER_S = 0.01
 
-Model = Literal[
-    "", "DM3507", "DM4310", "DM4310P", "DM4340", "DM4340P", "DM6006", "DM8006", "DM8009", "DM10010L", "DM10010",
-    "DMH3510", "DMG6215", "DMH6220",
-]  # fmt: skip
 
-
-class DamiaoDriveSettings(CanDriveSettings):
+class DamiaoDriveSettings(DamiaoSettings, RealDriveSettings):
     """One Damiao actuator, over the MIT protocol: torque."""
 
     kind: Literal["damiao"]
-    motor_id: int = quantity(1, "", "ESC_ID of the actuator", ge=1, le=0x7FE)
-    feedback_id: int = quantity(0x11, "", "MST_ID of the actuator; of each another one", ge=0, le=0x7FE)
-    model: Model = quantity("", "", "Model whose ranges it has to have; left out: those that it says are taken")
-    watchdog_s: float = quantity(0.2, "s", "Silence after which it stops, set in its TIMEOUT register", ge=0.01, le=2)
-    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.002, le=1.0)
 
 
 def make(settings: DamiaoDriveSettings, rig: Rig) -> Drive:
     """The driver."""
     from drivers.damiao.drive import DamiaoDrive
-    from drivers.damiao.settings import DamiaoSettings
 
-    return DamiaoDrive(DamiaoSettings(**can_values(settings)), joint_scale(settings, rig))
+    return DamiaoDrive(settings, joint_scale(settings, rig))
 
 
 def follow(settings: DamiaoDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
     """What listens to one that another host drives: to every answer, on the same bus."""
     from drivers.damiao.drive import follow
-    from drivers.damiao.settings import DamiaoSettings
 
-    return follow(DamiaoSettings(**can_values(settings)), joint_scale(settings, rig))
-
-
-def simulate() -> Simulate:
-    """The command that simulates one."""
-    from bench.drives.damiao.device import simulate
-
-    return simulate
+    return follow(settings, joint_scale(settings, rig))
 
 
 def scan(place: CanPlace) -> Iterator[FoundDrive]:
@@ -82,7 +63,7 @@ KIND = DriveKind(
     title="Damiao actuator, MIT protocol",
     settings=DamiaoDriveSettings,
     make=make,
-    simulate=simulate,
+    simulate=command_in("bench.drives.damiao.device"),
     follow=follow,
     scan_can=scan,
     conformance=(

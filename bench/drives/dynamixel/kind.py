@@ -5,56 +5,35 @@ from pathlib import Path
 from typing import Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
-from bench.config.drives.real import RealDriveSettings, driver_values, joint_scale
+from bench.config.drives.real import RealDriveSettings, joint_scale
 from bench.config.drives.scanning import FoundDrive, SerialPlace
-from bench.config.drives.simulated_device import Simulate
-from bench.config.quantities import quantity
+from bench.config.drives.simulated_device import command_in
 from bench.config.rig import Rig
 from drivers.contract import Drive
+from drivers.dynamixel.settings import DynamixelSettings
 from drivers.follower import Follower
 
 _BAUD_RATES = (57600, 1_000_000, 2_000_000, 4_000_000, 115200)
 
-BaudRate = Literal[9600, 57600, 115200, 1_000_000, 2_000_000, 3_000_000, 4_000_000, 4_500_000]
 
-
-class DynamixelDriveSettings(RealDriveSettings):
+class DynamixelDriveSettings(DynamixelSettings, RealDriveSettings):
     """One Dynamixel X servo, protocol 2.0."""
 
     kind: Literal["dynamixel"]
-    port: str = quantity(..., "", "Serial port, such as /dev/ttyUSB0", min_length=1)
-    baud_rate: BaudRate = quantity(57600, "", "Baud rate of the line")
-    servo_id: int = quantity(1, "", "Id of the servo", ge=0, le=252)
-    watchdog_s: float = quantity(
-        0.2, "s", "Silence on the bus after which it stops the motor, in steps of 0.02 s", ge=0.02, le=2.0
-    )
-    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.002, le=1.0)
-    current_limit_a: float | None = quantity(
-        None, "A", "Highest motor current, set in the servo; left out: the servo's own", gt=0, le=10
-    )
 
 
 def make(settings: DynamixelDriveSettings, rig: Rig) -> Drive:
     """The driver."""
     from drivers.dynamixel.drive import DynamixelDrive
-    from drivers.dynamixel.settings import DynamixelSettings
 
-    return DynamixelDrive(DynamixelSettings(**driver_values(settings)), joint_scale(settings, rig))
+    return DynamixelDrive(settings, joint_scale(settings, rig))
 
 
 def follow(settings: DynamixelDriveSettings, rig: Rig, link: Path, period_s: float) -> Follower:
     """Stand between another program and the servo."""
     from drivers.dynamixel.drive import follow as followed
-    from drivers.dynamixel.settings import DynamixelSettings
 
-    return followed(DynamixelSettings(**driver_values(settings)), joint_scale(settings, rig), link, period_s)
-
-
-def simulate() -> Simulate:
-    """The command that simulates one."""
-    from bench.drives.dynamixel.device import simulate
-
-    return simulate
+    return followed(settings, joint_scale(settings, rig), link, period_s)
 
 
 def scan(place: SerialPlace) -> Iterator[FoundDrive]:
@@ -76,7 +55,7 @@ KIND = DriveKind(
     title="Dynamixel X servo, protocol 2.0",
     settings=DynamixelDriveSettings,
     make=make,
-    simulate=simulate,
+    simulate=command_in("bench.drives.dynamixel.device"),
     scan_serial=scan,
     follow=follow,
     conformance=(

@@ -6,55 +6,35 @@ from pathlib import Path
 from typing import Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
-from bench.config.drives.real import CanDriveSettings, can_values, joint_scale
+from bench.config.drives.real import RealDriveSettings, joint_scale
 from bench.config.drives.scanning import CanPlace, FoundDrive
-from bench.config.drives.simulated_device import Simulate
-from bench.config.quantities import quantity
+from bench.config.drives.simulated_device import command_in
 from bench.config.rig import Rig
 from drivers.contract import Drive
 from drivers.follower import Follower
+from drivers.odrive.settings import OdriveSettings
 
 _LISTEN_S = 0.3  # a heartbeat comes every 0.1 s
 
 
-class OdriveDriveSettings(CanDriveSettings):
+class OdriveDriveSettings(OdriveSettings, RealDriveSettings):
     """One axis of an ODrive, over CANSimple: torque."""
 
     kind: Literal["odrive"]
-    node_id: int = quantity(0, "", "Node ID of the axis", ge=0, le=62)
-    watchdog_s: float = quantity(
-        0.2, "s", "Its watchdog, as it is set with odrivetool; CANSimple has no message for it", ge=0.02, le=2.0
-    )
-    watchdog_is_set_in_drive: bool = quantity(
-        False, "", "true: axis0.config.enable_watchdog and watchdog_timeout are set so"
-    )
-    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for the answers of a cycle", ge=0.002, le=1.0)
-    slow_every: int = quantity(
-        20, "cycles", "Cycles between two questions for supply voltage or temperature, in turn", ge=1, le=1000
-    )
 
 
 def make(settings: OdriveDriveSettings, rig: Rig) -> Drive:
     """The driver."""
     from drivers.odrive.drive import OdriveDrive
-    from drivers.odrive.settings import OdriveSettings
 
-    return OdriveDrive(OdriveSettings(**can_values(settings)), joint_scale(settings, rig))
+    return OdriveDrive(settings, joint_scale(settings, rig))
 
 
 def follow(settings: OdriveDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
     """What listens to one that another host drives: to every answer, on the same bus."""
     from drivers.odrive.drive import follow
-    from drivers.odrive.settings import OdriveSettings
 
-    return follow(OdriveSettings(**can_values(settings)), joint_scale(settings, rig))
-
-
-def simulate() -> Simulate:
-    """The command that simulates one."""
-    from bench.drives.odrive.device import simulate
-
-    return simulate
+    return follow(settings, joint_scale(settings, rig))
 
 
 def scan(place: CanPlace) -> Iterator[FoundDrive]:
@@ -79,7 +59,7 @@ KIND = DriveKind(
     title="ODrive axis, CANSimple",
     settings=OdriveDriveSettings,
     make=make,
-    simulate=simulate,
+    simulate=command_in("bench.drives.odrive.device"),
     follow=follow,
     scan_can=scan,
     conformance=(

@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
-from bench.config.drives.real import CanDriveSettings, can_values, joint_scale
+from bench.config.drives.real import RealDriveSettings, joint_scale
 from bench.config.drives.scanning import CanPlace, FoundDrive
 from bench.config.drives.simulated_device import Simulate
-from bench.config.quantities import quantity
 from bench.config.rig import Rig
 from drivers.contract import Drive
 from drivers.follower import Follower
+from drivers.robstride.settings import RobstrideSettings
 
 if TYPE_CHECKING:
     from sim_backend.devices.mit.serve import Make
@@ -20,38 +20,25 @@ if TYPE_CHECKING:
 _IDS = range(1, 128)
 _ANSWER_S = 0.3
 
-Model = Literal["", "RS00", "RS01", "RS02", "RS03", "RS04", "RS05", "RS06", "EL05"]
 
-
-class RobstrideDriveSettings(CanDriveSettings):
+class RobstrideDriveSettings(RobstrideSettings, RealDriveSettings):
     """One RobStride actuator, over its own protocol: torque."""
 
     kind: Literal["robstride"]
-    motor_id: int = quantity(127, "", "CAN id of the actuator", ge=1, le=0x7F)
-    model: Model = quantity("", "", "Model on its plate, whose ranges its frames have")
-    position_range_rad: float = quantity(
-        0.0, "rad", "Range of another firmware, with the next two; 0: the model's", ge=0
-    )
-    speed_range_rad_s: float = quantity(0.0, "rad/s", "Range of another firmware; 0: the model's", ge=0)
-    torque_range_n_m: float = quantity(0.0, "N m", "Range of another firmware; 0: the model's", ge=0)
-    watchdog_s: float = quantity(0.2, "s", "Silence after which it stops, set in its canTimeout", ge=0.01, le=2)
-    answer_timeout_s: float = quantity(0.05, "s", "Longest wait for one answer", ge=0.002, le=1.0)
 
 
 def make(settings: RobstrideDriveSettings, rig: Rig) -> Drive:
     """The driver."""
     from drivers.robstride.drive import RobstrideDrive
-    from drivers.robstride.settings import RobstrideSettings
 
-    return RobstrideDrive(RobstrideSettings(**can_values(settings)), joint_scale(settings, rig))
+    return RobstrideDrive(settings, joint_scale(settings, rig))
 
 
 def follow(settings: RobstrideDriveSettings, rig: Rig, _link: Path, _period_s: float) -> Follower:
     """What listens to one that another host drives: to every answer, on the same bus."""
     from drivers.robstride.drive import follow
-    from drivers.robstride.settings import RobstrideSettings
 
-    return follow(RobstrideSettings(**can_values(settings)), joint_scale(settings, rig))
+    return follow(settings, joint_scale(settings, rig))
 
 
 def simulate() -> Simulate:

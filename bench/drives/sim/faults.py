@@ -1,11 +1,10 @@
 """Faults that the simulated drive is to have: `[[drive.faults]]` in bench.toml, one table each."""
 
-from typing import Annotated, Any, Literal
-
-from pydantic import Discriminator, Tag
+from typing import TYPE_CHECKING, Literal
 
 from bench.config.quantities import quantity
 from bench.config.rig import Section
+from bench.config.validation import chosen_by_kind, kind_of
 
 
 class FaultSettings(Section):
@@ -98,25 +97,7 @@ KINDS: tuple[type[FaultSettings], ...] = (
     EncoderStuck, EncoderJump, SamplesLost, SamplesLate, OverTemperature, OverCurrent, SupplyLost, DriveFailed,
     TorqueDisabled, ClutchSlips, LoadFalls,
 )  # fmt: skip
-NAMES = tuple(kind.model_fields["kind"].annotation.__args__[0] for kind in KINDS)  # type: ignore[union-attr]
-
-
-def _tag(table: Any) -> str:
-    kind = table.get("kind", "") if isinstance(table, dict) else getattr(table, "kind", "")
-    return f"tagged-{kind}"  # so that messages name the key without the tag
-
-
-AnyFault = Annotated[
-    Annotated[EncoderStuck, Tag("tagged-encoder-stuck")]
-    | Annotated[EncoderJump, Tag("tagged-encoder-jump")]
-    | Annotated[SamplesLost, Tag("tagged-samples-lost")]
-    | Annotated[SamplesLate, Tag("tagged-samples-late")]
-    | Annotated[OverTemperature, Tag("tagged-over-temperature")]
-    | Annotated[OverCurrent, Tag("tagged-over-current")]
-    | Annotated[SupplyLost, Tag("tagged-supply-lost")]
-    | Annotated[DriveFailed, Tag("tagged-drive-failed")]
-    | Annotated[TorqueDisabled, Tag("tagged-torque-disabled")]
-    | Annotated[ClutchSlips, Tag("tagged-clutch-slips")]
-    | Annotated[LoadFalls, Tag("tagged-load-falls")],
-    Discriminator(_tag, custom_error_type="kind", custom_error_message=f"kind should be one of {', '.join(NAMES)}"),
-]
+if TYPE_CHECKING:
+    AnyFault = FaultSettings
+else:
+    AnyFault = chosen_by_kind(KINDS, f"kind should be one of {', '.join(map(kind_of, KINDS))}")

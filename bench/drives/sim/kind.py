@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 from bench.config.drives.kind import ConformanceBench, DriveKind
 from bench.config.rig import Rig
-from bench.drives.sim import faults as settings_of
-from bench.drives.sim.faults import FaultSettings
+from bench.config.validation import kind_of
 from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.errors import ConfigurationError
 from drivers.contract import Drive
@@ -38,25 +37,14 @@ def make(settings: SimulatedDriveSettings, _rig: Rig) -> Drive:
 
 def _script(settings: SimulatedDriveSettings) -> "list[Fault]":
     """The faults of bench.toml as the simulation plays them."""
-    from sim_backend.faults import script as faults
+    from sim_backend.devices.joint_tables import NAMES
+    from sim_backend.faults.script import FOR_GOOD_S, SamplesLost
 
-    kinds: dict[type[FaultSettings], Callable[..., Fault]] = {
-        settings_of.EncoderStuck: faults.EncoderStuck,
-        settings_of.EncoderJump: faults.EncoderJump,
-        settings_of.SamplesLost: faults.SamplesLost,
-        settings_of.SamplesLate: faults.SamplesLate,
-        settings_of.OverTemperature: faults.OverTemperature,
-        settings_of.OverCurrent: faults.OverCurrent,
-        settings_of.SupplyLost: faults.SupplyLost,
-        settings_of.DriveFailed: faults.DriveFailed,
-        settings_of.TorqueDisabled: faults.TorqueDisabled,
-        settings_of.ClutchSlips: faults.ClutchSlips,
-        settings_of.LoadFalls: faults.LoadFalls,
-    }
+    kinds: dict[str, Callable[..., Fault]] = {**NAMES, "samples-lost": SamplesLost}
     return [
-        kinds[type(fault)](
+        kinds[kind_of(type(fault))](
             start_s=fault.at_s,
-            duration_s=fault.for_s or faults.FOR_GOOD_S,
+            duration_s=fault.for_s or FOR_GOOD_S,
             by_the_wall=fault.clock == "wall",
             **fault.values(),
         )

@@ -17,7 +17,7 @@ from bench.errors import LimitError, OutOfRange, quantity_message
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.excursion import BRAKING_SHARE, comparing_cycles, slip_index
 from bench.experiments.parts.joint import Joint, Part
-from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_many, refuse_speed
+from bench.experiments.parts.refusal import refuse_angles, refuse_load, refuse_many, refuse_servo
 from bench.json_types import Value, objects
 from drivers.contract import Command, Mode
 
@@ -61,16 +61,14 @@ def break_away(
     yield from joint.wake()
     found = []
     for direction in (1, -1):
-        yield from joint.move(parameters.angle_rad)
-        yield from joint.settle(parameters.angle_rad)
+        yield from joint.rest_at(parameters.angle_rad)
         stood_s = yield from _rest(joint, parameters, configuration, dwell_s)
         readings, slipped = yield from _ramp(joint, parameters, configuration, direction * rate_a_s)
         found.append(_result(readings, slipped, direction, stood_s, parameters, configuration))
         detail = f"slip at {found[-1]['current_a']:.4g} A, {found[-1]['slip_s']:.4g} s" if slipped else "no slip"
         yield from joint.push(Command(Mode.CURRENT, _rest_current_a(parameters, configuration)), ("breakaway", detail))
         yield from joint.brake(BRAKING_SHARE * configuration.motion.acceleration_rad_s2)
-    yield from joint.move(0.0)
-    yield from joint.settle(0.0)
+    yield from joint.rest_at(0.0)
     return {"breakaways": found, "search_ceiling_a": configuration.search.ceiling_a}
 
 
@@ -169,8 +167,7 @@ def _refuse(parameters: BreakawayRampsParameters, configuration: BenchConfigurat
     refuse_many(trials, "rates_a_s, dwells_s and repeats")
     refuse_load("load_kg", parameters.load_kg, configuration)
     refuse_angles("angle_rad", [0.0, parameters.angle_rad], parameters.excursion_rad + RUN_OUT_RAD, configuration)
-    refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
-    refuse_currents(configuration)
+    refuse_servo(configuration)
     ceiling_a, period_s = configuration.search.ceiling_a, configuration.control.period_s
     fastest_a_s = LARGEST_STEP * ceiling_a / period_s
     for rate_a_s in parameters.rates_a_s:

@@ -18,7 +18,7 @@ from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, Tr
 from bench.experiments.parts.excursion import Excursion
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.profile import SetPoint, run_up
-from bench.experiments.parts.refusal import refuse_coasting, refuse_currents, refuse_load, refuse_speed
+from bench.experiments.parts.refusal import refuse_coasting, refuse_load, refuse_servo, refuse_speed
 from bench.experiments.parts.stroke import StrokeSettings, refuse_travel
 from bench.json_types import Value, numbers
 from drivers.contract import Command, Mode
@@ -64,14 +64,12 @@ def coast_down(
     excursion = _excursion(configuration, parameters)
     near_rad = excursion.low_rad if sign > 0.0 else excursion.high_rad
     yield from joint.wake()
-    yield from joint.move(near_rad, acceleration_rad_s2=parameters.acceleration_rad_s2)
-    yield from joint.settle(near_rad)
+    yield from joint.rest_at(near_rad, acceleration_rad_s2=parameters.acceleration_rad_s2)
     before = yield from joint.follow(_to_speed(near_rad, sign * speed_rad_s, parameters, configuration))
     readings, at_rest = yield from _coast(joint, parameters, configuration, excursion)
     if not at_rest:
         yield from joint.brake(excursion.braking_rad_s2)
-    yield from joint.move(0.0, acceleration_rad_s2=parameters.acceleration_rad_s2)
-    yield from joint.settle(0.0)
+    yield from joint.rest_at(0.0, acceleration_rad_s2=parameters.acceleration_rad_s2)
     return _results(before, readings, at_rest, sign, configuration.control.period_s)
 
 
@@ -162,8 +160,7 @@ def _refuse(parameters: CoastDownParameters, configuration: BenchConfiguration) 
     for speed_rad_s in parameters.speeds_rad_s:
         refuse_speed("a speed of speeds_rad_s and a fifth", 1.2 * speed_rad_s, configuration)
         refuse_travel("a speed of speeds_rad_s", speed_rad_s, travel)
-    refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
-    refuse_currents(configuration)
+    refuse_servo(configuration)
     resolution_rad(configuration.rig)
 
 

@@ -55,8 +55,7 @@ def excite(configuration: BenchConfiguration, waveform: str, parameters: Excitat
     period_s = configuration.control.period_s
     set_points = sampled(waveform, parameters.duration_s, period_s, parameters.amplitude_rad, parameters.speed_rad_s)
     yield from joint.wake()
-    yield from joint.move(0.0)
-    yield from joint.settle(0.0)
+    yield from joint.rest_at(0.0)
     readings = yield from joint.follow(SetPoint(*point) for point in set_points.tolist())
     yield from joint.settle(0.0)
     measured = np.array([(r.sample.position_rad, r.velocity_rad_s, r.current_a) for r in readings])

@@ -18,9 +18,9 @@ from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
 from bench.experiments.parts.refusal import (
     refuse_angles,
-    refuse_currents,
     refuse_load,
     refuse_many,
+    refuse_servo,
     refuse_slow_move,
     refuse_speed,
 )
@@ -69,8 +69,7 @@ def probe(configuration: BenchConfiguration, parameters: HoldAndSoakParameters) 
     """
     joint = Joint(configuration)
     yield from joint.wake()
-    yield from joint.move(-parameters.probe_rad)
-    yield from joint.settle(-parameters.probe_rad)
+    yield from joint.rest_at(-parameters.probe_rad)
     means_a, readings = [], []
     for sign in (1.0, -1.0):
         way = _stroke(sign, parameters, configuration)
@@ -82,8 +81,7 @@ def probe(configuration: BenchConfiguration, parameters: HoldAndSoakParameters) 
         ]
         means_a.append(float(np.mean(middle)))
         readings += stroke
-    yield from joint.move(0.0)
-    yield from joint.settle(0.0)
+    yield from joint.rest_at(0.0)
     forward_a, back_a = means_a
     return {
         "friction_current_a": (forward_a - back_a) / 2.0,
@@ -104,15 +102,13 @@ def soak(configuration: BenchConfiguration, parameters: HoldAndSoakParameters, s
     cycles = ceil(seconds / period_s)
     yield from joint.wake()
     begin_rad = parameters.hold_rad if parameters.soak == "hold" else 0.0
-    yield from joint.move(begin_rad)
-    yield from joint.settle(begin_rad)
+    yield from joint.rest_at(begin_rad)
     points = _swing(parameters, cycles, period_s) if parameters.soak == "move" else _held(begin_rad, cycles)
     sum_a2, last = 0.0, joint.reading
     for target_rad, velocity_rad_s in points:  # not kept: minutes are many readings
         (last,) = yield from joint.follow([SetPoint(target_rad, velocity_rad_s)])
         sum_a2 += last.current_a**2
-    yield from joint.move(0.0)
-    yield from joint.settle(0.0)
+    yield from joint.rest_at(0.0)
     return {
         "soaked_s": cycles * period_s,
         "rms_current_a": (sum_a2 / cycles) ** 0.5,
@@ -166,8 +162,7 @@ def _refuse(parameters: HoldAndSoakParameters, configuration: BenchConfiguration
     refuse_angles("probe_rad", [-parameters.probe_rad, parameters.probe_rad], OVERSHOOT_RAD, configuration)
     refuse_speed("probe_rad_s", parameters.probe_rad_s, configuration)
     refuse_slow_move("probe_rad_s", parameters.probe_rad_s, 2.0 * parameters.probe_rad, configuration)
-    refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
-    refuse_currents(configuration)
+    refuse_servo(configuration)
     if parameters.soak == "move":
         _refuse_swing(parameters, configuration)
 

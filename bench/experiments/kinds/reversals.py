@@ -18,7 +18,7 @@ from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, Tr
 from bench.experiments.parts.excursion import BRAKING_SHARE
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
-from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
+from bench.experiments.parts.refusal import refuse_angles, refuse_load, refuse_servo, refuse_speed
 from bench.json_types import Value, numbers
 
 Amplitude = Annotated[float, Field(gt=0)]
@@ -61,8 +61,7 @@ def reverse(configuration: BenchConfiguration, parameters: ReversalsParameters, 
     """
     joint = Joint(configuration)
     yield from joint.wake()
-    yield from joint.move(parameters.angle_rad)
-    yield from joint.settle(parameters.angle_rad)
+    yield from joint.rest_at(parameters.angle_rad)
     joint.grip(resolution_rad(configuration.rig))
     ends = _ends(parameters, amplitude_rad)
     parts: list[tuple[list[SetPoint], list[Reading]]] = []
@@ -70,8 +69,7 @@ def reverse(configuration: BenchConfiguration, parameters: ReversalsParameters, 
         way = _way(begin_rad, end_rad, amplitude_rad, parameters, configuration)
         parts.append((way, (yield from joint.follow(way, ("reversal", f"towards {end_rad:.6g} rad")))))
     joint.grip(configuration.servo.dead_band_rad)
-    yield from joint.move(0.0)
-    yield from joint.settle(0.0)
+    yield from joint.rest_at(0.0)
     return _results(parts[1:-1])  # the first and the last are half strokes
 
 
@@ -144,8 +142,7 @@ def _refuse(parameters: ReversalsParameters, configuration: BenchConfiguration) 
             )
             raise LimitError(message, OutOfRange("an amplitude of amplitudes_rad", amplitude_rad, "rad", low=least_rad))
     refuse_speed("speed_rad_s", parameters.speed_rad_s, configuration)
-    refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
-    refuse_currents(configuration)
+    refuse_servo(configuration)
 
 
 def _duration_s(parameters: ReversalsParameters, _configuration: BenchConfiguration) -> float:

@@ -9,7 +9,7 @@ from bench.control.cycle import Procedure
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.followed_motion import ERROR_RESULTS, FollowedJoint, errors, refuse_unknown_joint
 from bench.experiments.parts.profile import SetPoint
-from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_speed
+from bench.experiments.parts.refusal import refuse_angles, refuse_load, refuse_servo, refuse_speed
 from bench.json_types import Value, number, numbers
 
 OVERSHOOT_RAD = 0.1  # of the servo, at most
@@ -74,8 +74,7 @@ def _refuse(parameters: SinusoidParameters, configuration: BenchConfiguration) -
     reach_rad = parameters.amplitude_rad
     refuse_angles("amplitude_rad", [-reach_rad, reach_rad], OVERSHOOT_RAD, configuration)
     refuse_speed("2 pi frequency_hz amplitude_rad", parameters.peak_rad_s, configuration)
-    refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
-    refuse_currents(configuration)
+    refuse_servo(configuration)
     refuse_unknown_joint(configuration)
 
 

@@ -14,7 +14,7 @@ from bench.experiments.analysis.saturation import Ending, next_run_up, remaining
 from bench.experiments.analysis.steady_speed import steady_speed_results
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.kinds.load_sweep import PAPER_LOADS_KG, Load
-from bench.experiments.parts.refusal import refuse_currents, refuse_duty, refuse_load, refuse_speed
+from bench.experiments.parts.refusal import refuse_duty, refuse_load, refuse_servo, refuse_speed
 from bench.experiments.parts.stroke import MARGIN_RAD, OVERSPEED, Held, Strokes, StrokeSettings, Window, refuse_travel
 from bench.json_types import Value, numbers
 from drivers.contract import Mode
@@ -163,8 +163,7 @@ def _refuse(parameters: SpeedSweepParameters, configuration: BenchConfiguration)
     ):
         refuse_speed(f"{name} and a tenth", OVERSPEED * speed_rad_s, configuration)
         refuse_travel(name, speed_rad_s, settings)
-    refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
-    refuse_currents(configuration)
+    refuse_servo(configuration)
     _refuse_levels(parameters, configuration)
 
 

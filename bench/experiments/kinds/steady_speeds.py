@@ -12,7 +12,7 @@ from bench.control.cycle import Procedure
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.followed_motion import ERROR_RESULTS, Followed, FollowedJoint, errors, refuse_unknown_joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
-from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_load, refuse_slow_move, refuse_speed
+from bench.experiments.parts.refusal import refuse_angles, refuse_load, refuse_servo, refuse_slow_move, refuse_speed
 from bench.json_types import Value, numbers
 
 PAPER_RPM = (100, 200, 400, 600, 800, 1000, 1200)
@@ -137,8 +137,7 @@ def _refuse(parameters: SteadySpeedsParameters, configuration: BenchConfiguratio
     for speed_rad_s in parameters.speeds_rad_s:
         refuse_speed("a speed of speeds_rad_s", speed_rad_s, configuration)
         refuse_slow_move("a speed of speeds_rad_s", speed_rad_s, 2.0 * reach_rad, configuration)
-    refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
-    refuse_currents(configuration)
+    refuse_servo(configuration)
     refuse_unknown_joint(configuration)
 
 

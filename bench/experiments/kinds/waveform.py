@@ -1,6 +1,6 @@
 """A waveform of one's own, from a CSV: a position that is followed, or a current or duty that is given."""
 
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any, Self
 
 from pydantic import Field, model_validator
@@ -8,10 +8,10 @@ from pydantic import Field, model_validator
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.errors import LimitError, ParameterError
-from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, trial_plan
-from bench.experiments.parts.injection import RESTS_S, summarise_injection
+from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan
+from bench.experiments.parts.injection import RESTS_S, plan_played, summarise_injection
 from bench.experiments.parts.refusal import refuse_load
-from bench.experiments.parts.signal_play import MODES, PLAYED_RESULTS, Signal, play, refuse_signal
+from bench.experiments.parts.signal_play import MODES, PLAYED_RESULTS, Signal, refuse_signal
 from bench.experiments.parts.waveform_csv import Waveform, read_waveform
 from bench.json_types import Value
 from drivers.contract import Mode
@@ -57,18 +57,7 @@ class WaveformParameters(Parameters):
 
 def _plan(parameters: WaveformParameters, configuration: BenchConfiguration) -> list[TrialPlan]:
     signal = parameters.signal(configuration.control.period_s)
-    return [
-        trial_plan(
-            configuration,
-            f"waveform-{repeat:02d}",
-            partial(play, configuration, signal),
-            parameters.load_kg,
-            parameters.balanced,
-            waveform=parameters.source,
-            repeat=repeat,
-        )
-        for repeat in range(1, parameters.repeats + 1)
-    ]
+    return plan_played("waveform", signal, parameters, configuration, waveform=parameters.source)
 
 
 def _refuse(parameters: WaveformParameters, configuration: BenchConfiguration) -> None:

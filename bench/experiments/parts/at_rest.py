@@ -62,10 +62,8 @@ def measure_at_rest(
     """
     joint = Joint(configuration)
     yield from joint.wake()
-    yield from joint.move(0.0)
-    yield from joint.settle(0.0)
-    yield from joint.move(angle_rad, approach_rad_s)
-    steady = yield from joint.settle(angle_rad)
+    yield from joint.rest_at(0.0)
+    steady = yield from joint.rest_at(angle_rad, approach_rad_s)
     results: dict[str, Value] = {"steady_current_a": steady.current_a, "steady_position_rad": steady.position_rad}
     found: list[Found] = []
     for _ in range(searches):

@@ -51,8 +51,7 @@ class FollowedJoint:
 
     def end(self) -> Part[None]:
         """Back to angle 0, where the joint may be left without power."""
-        yield from self._joint.move(0.0)
-        yield from self._joint.settle(0.0)
+        yield from self._joint.rest_at(0.0)
 
 
 def errors(followed: Sequence[Followed], load_kg: float, configuration: BenchConfiguration) -> dict[str, Value]:

@@ -73,6 +73,13 @@ def plan_injection(
 ) -> list[TrialPlan]:
     """One trial per repeat."""
     signal = parameters.signal(wave(parameters, configuration.control.period_s))
+    return plan_played(name, signal, parameters, configuration, **parameters.held())
+
+
+def plan_played(
+    name: str, signal: Signal, parameters: Any, configuration: BenchConfiguration, **held: Condition
+) -> list[TrialPlan]:
+    """The same of any signal, by `load_kg`, `balanced` and `repeats` of its parameters."""
     return [
         trial_plan(
             configuration,
@@ -80,7 +87,7 @@ def plan_injection(
             partial(play, configuration, signal),
             parameters.load_kg,
             parameters.balanced,
-            **parameters.held(),
+            **held,
             repeat=repeat,
         )
         for repeat in range(1, parameters.repeats + 1)

@@ -98,6 +98,13 @@ class Joint:
         cycles = ceil(profile.duration_s / self._period_s)
         yield from self.follow(profile.at((cycle + 1) * self._period_s) for cycle in range(cycles))
 
+    def rest_at(
+        self, target_rad: float, speed_rad_s: float | None = None, acceleration_rad_s2: float | None = None
+    ) -> Part[Steady]:
+        """As `move`, then as `settle`."""
+        yield from self.move(target_rad, speed_rad_s, acceleration_rad_s2)
+        return (yield from self.settle(target_rad))
+
     def push(self, command: Command, event: tuple[str, str] | None = None) -> Part[Reading]:
         """One cycle of a command of one's own; no position is asked for."""
         self._command_a = command.value if command.mode is _CURRENT else self._command_a

@@ -1,5 +1,6 @@
 """The load estimator on the bench: made from the calibration in use, fed with every reading."""
 
+from dataclasses import replace
 from math import nan, pi
 
 from bench.config.configuration import BenchConfiguration
@@ -54,8 +55,7 @@ class LoadFollower:
             Why the search has no estimate; "" where it has.
         """
         yield from joint.wake()
-        yield from joint.move(0.0)
-        yield from joint.settle(0.0)
+        yield from joint.rest_at(0.0)
         found = yield from joint.search(0.0)
         if not found.failure:
             self.take(joint.reading, 0.0, finding([found], self._configuration))
@@ -94,10 +94,7 @@ def joint_model(configuration: BenchConfiguration) -> JointModel:
     rotor = _rotor_inertia_a_s2_rad(rig)
     rest = RestSettings() if configuration.rest is None else configuration.rest
     try:
-        studied = configuration.friction.study
-        if studied is not None:
-            return _of_study(configuration, studied, curves, max(rest.scatter, LEAST_SCATTER))
-        return JointModel(
+        found = JointModel(
             friction=configuration.friction.over_friction(),
             ratio=rig.gear.ratio or 1.0,
             rotor_inertia_a_s2_rad=rotor,
@@ -108,33 +105,23 @@ def joint_model(configuration: BenchConfiguration) -> JointModel:
             gear_loss=rest.calibration().gear_loss(),
             friction_scatter=max(rest.scatter, LEAST_SCATTER),
         )
+        studied = configuration.friction.study
+        return found if studied is None else _of_study(found, studied, curves, rig)
     except CompensatorError as error:
         raise ConfigurationError(f"the friction curves cannot be looked up by F_load: {error}") from error
 
 
-def _of_study(
-    configuration: BenchConfiguration, studied: StudiedModel, curves: list[FrictionCurve], scatter: float
-) -> JointModel:
+def _of_study(found: JointModel, studied: StudiedModel, curves: list[FrictionCurve], rig: Rig) -> JointModel:
     """The joint as a study found it in motion; what hangs on it is still selected by the curves."""
     from bench.experiments.parts.studied import online_friction  # the lab is loaded where a study is used
 
-    rig, rest = configuration.rig, configuration.rest or RestSettings()
     per_a, length_m = torque_n_m_a(rig), rig.arm.length_m or 0.0
-    friction = configuration.friction
-    assert friction is not None  # its curves were given
     rotor, arm = _before_and_behind_a_s2_rad(rig, studied.inertia_n_m_s2_rad / per_a)
-    return JointModel(
-        friction=friction.over_friction(),
-        ratio=rig.gear.ratio or 1.0,
+    of_loads = (studied.load_inertia_scale * one.load_kg * length_m**2 / per_a for one in curves)
+    return replace(
+        found,
         rotor_inertia_a_s2_rad=rotor,
-        arm_inertia_a_s2_rad=tuple(
-            arm + studied.load_inertia_scale * one.load_kg * length_m**2 / per_a for one in curves
-        ),
-        offsets_a=tuple(one.offset_a for one in curves),
-        rise_offsets_a=tuple(one.rise_offset_a for one in curves),
-        gravity_a=tuple(load_current_a(one.load_kg, RIGHT_ANGLE_RAD, rig) for one in curves),
-        gear_loss=rest.calibration().gear_loss(),
-        friction_scatter=scatter,
+        arm_inertia_a_s2_rad=tuple(arm + of_load for of_load in of_loads),
         studied=online_friction(studied, rig),
     )
 

@@ -92,6 +92,12 @@ def refuse_currents(configuration: BenchConfiguration) -> None:
             raise LimitError(quantity_message(name, asked_a, f"at most limits.current_a, {limit_a:g}", "A", step))
 
 
+def refuse_servo(configuration: BenchConfiguration) -> None:
+    """Raise `LimitError` where moving from place to place may be faster, or ask for more current, than the limits."""
+    refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
+    refuse_currents(configuration)
+
+
 def refuse_duty(name: str, duty: float, configuration: BenchConfiguration) -> None:
     """Raise `LimitError` for a duty that drives more current than the limit through a joint that stands."""
     limit_a, rig = configuration.limits.current_a, configuration.rig

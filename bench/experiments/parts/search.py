@@ -1,8 +1,11 @@
 """The zero-speed search on the bench: the flow chart of the paper, or the improved one, as the configuration says."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
+from functools import partial
 from math import ceil
-from typing import Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.rig import resolution_rad
@@ -10,8 +13,8 @@ from bench.errors import ConfigurationError
 from compensator.rest import rest_search, zero_speed_search
 from compensator.rest.breakaway_fit import Breakaway
 from compensator.rest.motion_detection import threshold_counts
-from compensator.rest.rest_search import RestSearchSettings
-from compensator.rest.zero_speed_search import SearchReading, SearchSettings
+from compensator.rest.rest_search import RestSearchSettings, RestSearchState
+from compensator.rest.zero_speed_search import SearchReading, SearchSettings, SearchState
 
 STILL_COUNTS = 1.5
 
@@ -32,92 +35,80 @@ class Found:
     travel_rad: float = 0.0
 
 
-class Search(Protocol):
+class _State(Protocol):
+    """Of either method: where it is, and whether it ended, with or without an estimate."""
+
+    @property
+    def finished(self) -> bool: ...
+
+    @property
+    def phase(self) -> Enum: ...
+
+
+StateT = TypeVar("StateT", bound=_State)
+
+
+class Search(Generic[StateT]):
     """One search, cycle by cycle.
+
+    Args:
+        state: in which it begins.
+        advance: by one control cycle.
+        found: how it ended, by its last state.
 
     Attributes:
         finished: True when it ended, with or without an estimate.
         phase: where it is, in words.
     """
 
-    finished: bool
-    phase: str
+    def __init__(
+        self,
+        state: StateT,
+        advance: Callable[[StateT, SearchReading], tuple[StateT, float | None]],
+        found: Callable[[StateT], Found],
+    ) -> None:
+        self._state, self._advance, self._found = state, advance, found
+        self.finished, self.phase = state.finished, str(state.phase.value)
 
     def advance(self, reading: SearchReading) -> float | None:
         """One control cycle: the current to command [A], or None while the position servo has the joint."""
-
-    def found(self) -> Found:
-        """How it ended."""
-
-
-class PaperSearch:
-    """Fig. 5.
-
-    Args:
-        configuration: of the bench.
-        set_point_rad: where the joint is settled.
-    """
-
-    def __init__(self, configuration: BenchConfiguration, set_point_rad: float) -> None:
-        self._settings = paper_settings(configuration)
-        self._rate_a_s = configuration.search.current_step_a / configuration.search.step_s
-        self._state = zero_speed_search.begin(set_point_rad)
-        self.finished, self.phase = self._state.finished, self._state.phase.value
-
-    def advance(self, reading: SearchReading) -> float | None:
-        """One control cycle."""
         before = self._state
-        self._state, current_a = zero_speed_search.advance(self._settings, before, reading)
+        self._state, current_a = self._advance(before, reading)
         if self._state.phase is not before.phase:
             self.finished, self.phase = self._state.finished, self._state.phase.value
         return current_a
 
     def found(self) -> Found:
         """How it ended."""
-        state = self._state
-        if state.phase is not zero_speed_search.Phase.DONE:
-            return Found(state.reason.value if state.reason else state.phase.value)
-        ends = ((1.0, state.max_current_a), (-1.0, state.min_current_a))
-        return Found("", tuple(Breakaway(sign, current_a, self._rate_a_s) for sign, current_a in ends))
+        return self._found(self._state)
 
 
-class ImprovedSearch:
-    """Several quick breakaways at two rates.
-
-    Args:
-        configuration: of the bench.
-        set_point_rad: where the joint is settled.
-    """
-
-    def __init__(self, configuration: BenchConfiguration, set_point_rad: float) -> None:
-        self._settings = improved_settings(configuration)
-        self._state = rest_search.begin(set_point_rad)
-        self.finished, self.phase = self._state.finished, self._state.phase.value
-
-    def advance(self, reading: SearchReading) -> float | None:
-        """One control cycle."""
-        before = self._state
-        self._state, current_a = rest_search.advance(self._settings, before, reading)
-        if self._state.phase is not before.phase:
-            self.finished, self.phase = self._state.finished, self._state.phase.value
-        return current_a
-
-    def found(self) -> Found:
-        """How it ended."""
-        progress = self._state.progress
-        if progress.phase is not rest_search.Phase.DONE:
-            return Found(progress.reason.value if progress.reason else progress.phase.value)
-        return Found("", progress.breakaways)
-
-
-def begin_search(configuration: BenchConfiguration, set_point_rad: float) -> Search:
-    """A search by the method of the configuration.
+def begin_search(configuration: BenchConfiguration, set_point_rad: float) -> Search[Any]:
+    """A search by the method of the configuration: Fig. 5, or several quick breakaways at two rates.
 
     Raises:
         ConfigurationError: the rig leaves out encoder counts, gear ratio or, for the paper's, backlash.
     """
-    kind = PaperSearch if configuration.search.method == "paper" else ImprovedSearch
-    return kind(configuration, set_point_rad)
+    if configuration.search.method != "paper":
+        improved = partial(rest_search.advance, improved_settings(configuration))
+        return Search(rest_search.begin(set_point_rad), improved, _found)
+    advance = partial(zero_speed_search.advance, paper_settings(configuration))
+    rate_a_s = configuration.search.current_step_a / configuration.search.step_s
+    return Search(zero_speed_search.begin(set_point_rad), advance, partial(_found_by_paper, rate_a_s))
+
+
+def _found_by_paper(rate_a_s: float, state: SearchState) -> Found:
+    if state.phase is not zero_speed_search.Phase.DONE:
+        return Found(state.reason.value if state.reason else state.phase.value)
+    ends = ((1.0, state.max_current_a), (-1.0, state.min_current_a))
+    return Found("", tuple(Breakaway(sign, current_a, rate_a_s) for sign, current_a in ends))
+
+
+def _found(state: RestSearchState) -> Found:
+    progress = state.progress
+    if progress.phase is not rest_search.Phase.DONE:
+        return Found(progress.reason.value if progress.reason else progress.phase.value)
+    return Found("", progress.breakaways)
 
 
 def paper_settings(configuration: BenchConfiguration) -> SearchSettings:

@@ -13,7 +13,7 @@ from bench.errors import LimitError, quantity_message
 from bench.experiments.parts.excursion import BRAKING_SHARE, Excursion
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.profile import SetPoint
-from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_duty, refuse_speed
+from bench.experiments.parts.refusal import refuse_angles, refuse_duty, refuse_servo
 from bench.json_types import Value
 from drivers.contract import Command, Mode
 
@@ -63,16 +63,14 @@ def play(configuration: BenchConfiguration, signal: Signal) -> Procedure:
     acceleration = BRAKING_SHARE * configuration.motion.acceleration_rad_s2
     start_rad = float(signal.values[0]) if signal.quantity == "position_rad" else 0.0
     yield from joint.wake()
-    yield from joint.move(start_rad)
-    yield from joint.settle(start_rad)
+    yield from joint.rest_at(start_rad)
     reason = ""
     if signal.quantity == "position_rad":
         readings = yield from joint.follow(set_points(signal, configuration), ("signal", "begin"))
     else:
         readings, reason = yield from _push(joint, signal, configuration)
         yield from joint.brake(acceleration)
-    yield from joint.move(0.0)
-    yield from joint.settle(0.0)
+    yield from joint.rest_at(0.0)
     return _results(signal, readings, configuration) | {"ended_early": reason}
 
 
@@ -118,8 +116,7 @@ def refuse_signal(name: str, signal: Signal, configuration: BenchConfiguration) 
         signal: as it would be played.
         configuration: of the bench.
     """
-    refuse_speed("motion.speed_rad_s", configuration.motion.speed_rad_s, configuration)
-    refuse_currents(configuration)
+    refuse_servo(configuration)
     if signal.quantity == "position_rad":
         _refuse_position(name, signal.values, configuration)
         return

@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 from typing import Any
 
-from sqlalchemy import Connection, Row, select, update
+from sqlalchemy import Connection, select, update
 
 from bench.store.database import Database
-from bench.store.errors import NotFoundError
 from bench.store.records import CalibrationRow
 from bench.store.schema import CALIBRATION
 from bench.store.tables import chain
-from bench.store.tables.experiments import insert_row, now
+from bench.store.tables.experiments import insert_row, now, row_of
 
 
 class Calibrations:
@@ -35,7 +34,7 @@ class Calibrations:
         """Newest first; all of them without a limit."""
         query = select(CALIBRATION).order_by(CALIBRATION.c.id.desc()).limit(limit).offset(offset)
         with self._database.reading() as connection:
-            return [_record(row) for row in connection.execute(query)]
+            return [CalibrationRow(**row._asdict()) for row in connection.execute(query)]
 
     def choose(self, calibration_id: int) -> None:
         """Name one as the one to use, or `NotFoundError`."""
@@ -53,11 +52,5 @@ class Calibrations:
 
 
 def _get(connection: Connection, calibration_id: int) -> CalibrationRow:
-    row = connection.execute(select(CALIBRATION).where(CALIBRATION.c.id == calibration_id)).one_or_none()
-    if row is None:
-        raise NotFoundError(f"calibration {calibration_id} is not in the store; list the calibrations to see which are")
-    return _record(row)
-
-
-def _record(row: Row[Any]) -> CalibrationRow:
-    return CalibrationRow(**row._asdict())
+    query = select(CALIBRATION).where(CALIBRATION.c.id == calibration_id)
+    return CalibrationRow(**row_of(connection, query, f"calibration {calibration_id}", "calibrations")._asdict())

@@ -5,7 +5,7 @@ from dataclasses import asdict, fields
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Connection, Table, insert, select, update
+from sqlalchemy import Connection, Row, Select, Table, insert, select, update
 
 from bench.json_types import Values
 from bench.store.errors import NotFoundError, StoreStateError, StoreValueError
@@ -25,6 +25,24 @@ def insert_row(connection: Connection, table: Table, row: Mapping[str, object]) 
     """Insert one row. Returns the id that the database gave it."""
     row_id: int = connection.execute(insert(table).values(**row).returning(table.c.id)).scalar_one()
     return row_id
+
+
+def row_of(connection: Connection, query: Select[Any], one: str, listed: str) -> Row[Any]:
+    """The only row that a query finds.
+
+    Args:
+        connection: inside a transaction.
+        query: for it.
+        one: what it is, with its number ("study 3"), for the message.
+        listed: what may be listed to see which there are ("studies").
+
+    Raises:
+        NotFoundError: there is none.
+    """
+    row = connection.execute(query).one_or_none()
+    if row is None:
+        raise NotFoundError(f"{one} is not in the store; list the {listed} to see which are")
+    return row
 
 
 def add(connection: Connection, owner: str | None, new: NewExperiment, outcome: str = "running") -> int:
@@ -99,9 +117,7 @@ def get(connection: Connection, experiment_id: int) -> Experiment:
         NotFoundError: no such experiment.
     """
     query = select(*COLUMNS).where(EXPERIMENT.c.id == experiment_id, EXPERIMENT.c.outcome.not_in(HIDDEN))
-    row = connection.execute(query).one_or_none()
-    if row is None:
-        raise NotFoundError(f"experiment {experiment_id} is not in the store; list the experiments to see which are")
+    row = row_of(connection, query, f"experiment {experiment_id}", "experiments")
     return Experiment(**row._asdict(), tags=tags.of_experiments(connection, [experiment_id]).get(experiment_id, ()))
 
 

@@ -13,13 +13,12 @@ from typing import Any
 
 from sqlalchemy import Connection, Row, and_, delete, func, select, update
 
-from bench.json_types import Json
 from bench.store.database import Database
 from bench.store.errors import NotFoundError, StoreStateError
 from bench.store.schema import HANDED_IN, LAB_ITEM
 from bench.store.tables.benches import LOST_S
 from bench.store.tables.experiments import insert_row, now
-from bench.store.tables.queue import RUNNING, WAITING
+from bench.store.tables.queue import RUNNING, WAITING, Asked
 
 TAKEN = "taken"
 OPEN = (WAITING, TAKEN, RUNNING)
@@ -28,22 +27,15 @@ ITEM = LAB_ITEM.c
 
 
 @dataclass(frozen=True, slots=True)
-class NewLabItem:
+class NewLabItem(Asked):
     """An experiment for a bench of the laboratory.
 
     Attributes:
-        kind, parameters, operator, note, tags, pace: as of the queue of a bench.
         asked_by: who asks for it.
         for_bench, for_rig: name of the bench, of its rig; "": any.
         for_tags: what a bench has to have among the `lab_tags` of its configuration.
     """
 
-    kind: str
-    parameters: Json
-    operator: str = ""
-    note: str = ""
-    tags: list[str] = field(default_factory=list)
-    pace: str | None = None
     asked_by: str = ""
     for_bench: str = ""
     for_rig: str = ""

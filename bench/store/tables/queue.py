@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, field
 from datetime import datetime
 from typing import Any, Protocol
 
-from sqlalchemy import ColumnElement, Connection, Row, Select, delete, func, insert, select, update
+from sqlalchemy import ColumnElement, Connection, Select, delete, func, insert, select, update
 
 from bench.json_types import Json
 from bench.store.database import Database
@@ -18,18 +18,16 @@ LOST = "the process that ran the queue ended before its experiment was on record
 GONE = "its experiment is not in the store any more"
 MOST_WAITING = 10_000  # items of a bench: what is asked of the queue takes longer with each
 ITEM = QUEUE_ITEM.c
+PLACES = (ITEM.place, ITEM.id)
 
 
 @dataclass(frozen=True, slots=True)
-class NewItem:
-    """An experiment to come.
+class Asked:
+    """An experiment that is asked for.
 
     Attributes:
         kind, parameters, operator, note, pace: as `Runner.start` takes them.
         tags: given to the experiment.
-        duration_s: estimate.
-        loads: [load_kg, balanced] of its trials, one entry where the next trials have the same.
-        lab_claim: of one that was taken from the laboratory's queue.
     """
 
     kind: str
@@ -38,6 +36,18 @@ class NewItem:
     note: str = ""
     tags: list[str] = field(default_factory=list)
     pace: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class NewItem(Asked):
+    """An experiment to come on a bench.
+
+    Attributes:
+        duration_s: estimate.
+        loads: [load_kg, balanced] of its trials, one entry where the next trials have the same.
+        lab_claim: of one that was taken from the laboratory's queue.
+    """
+
     duration_s: float = 0.0
     loads: list[list[Any]] = field(default_factory=list)
     lab_claim: str | None = None
@@ -123,13 +133,11 @@ class QueueTable:
 
     def items(self, *states: str, campaign_id: int | None = None) -> list[QueueItem]:
         """In the order of the queue; of some states, of a campaign; all without either."""
-        query = select(*COLUMNS).where(ITEM.bench == self._bench).order_by(ITEM.place, ITEM.id)
-        if states:
-            query = query.where(ITEM.state.in_(states))
+        where: list[ColumnElement[bool]] = [ITEM.state.in_(states)] if states else []
         if campaign_id is not None:
-            query = query.where(ITEM.campaign_id == campaign_id)
+            where.append(ITEM.campaign_id == campaign_id)
         with self._database.reading() as connection:
-            return [_item(row) for row in connection.execute(query)]
+            return self._found(connection, *where)
 
     def count_noted(self, note: str, *states: str) -> int:
         """How many items of some states have a note, word for word."""
@@ -138,17 +146,14 @@ class QueueTable:
 
     def ended(self, limit: int) -> list[QueueItem]:
         """What came out of the queue, newest first."""
-        query = select(*COLUMNS).where(ITEM.bench == self._bench, ITEM.state.not_in((WAITING, RUNNING)))
+        newest_first = (ITEM.finished_utc.desc(), ITEM.id.desc())
         with self._database.reading() as connection:
-            found = connection.execute(query.order_by(ITEM.finished_utc.desc(), ITEM.id.desc()).limit(limit))
-            return [_item(row) for row in found]
+            return self._found(connection, ITEM.state.not_in((WAITING, RUNNING)), order=newest_first, limit=limit)
 
     def claimed(self, claim: str) -> QueueItem | None:
         """The item that was taken from the laboratory's queue under a claim; None where there is none any more."""
-        query = select(*COLUMNS).where(ITEM.bench == self._bench, ITEM.lab_claim == claim)
         with self._database.reading() as connection:
-            row = connection.execute(query).one_or_none()
-            return None if row is None else _item(row)
+            return next(iter(self._found(connection, ITEM.lab_claim == claim)), None)
 
     def item(self, item_id: int) -> QueueItem:
         """One item, or `NotFoundError`."""
@@ -157,10 +162,8 @@ class QueueTable:
 
     def next(self) -> QueueItem | None:
         """What is to be run next; None where nothing waits."""
-        query = select(*COLUMNS).where(ITEM.bench == self._bench, ITEM.state == WAITING)
         with self._database.reading() as connection:
-            row = connection.execute(query.order_by(ITEM.place, ITEM.id).limit(1)).one_or_none()
-            return None if row is None else _item(row)
+            return next(iter(self._found(connection, ITEM.state == WAITING, limit=1)), None)
 
     def move(self, item_id: int, to: int) -> None:
         """Move one that waits to a place among those that wait, from 0; beyond the last: to the end.
@@ -172,7 +175,7 @@ class QueueTable:
         with self._database.writing() as connection:
             self._get_waiting(connection, item_id)
             query = select(ITEM.id, ITEM.place).where(ITEM.bench == self._bench, ITEM.state == WAITING)
-            rows = connection.execute(query.order_by(ITEM.place, ITEM.id)).all()
+            rows = connection.execute(query.order_by(*PLACES)).all()
             order = [row.id for row in rows if row.id != item_id]
             order.insert(to, item_id)
             for row_id, place in zip(order, sorted(row.place for row in rows), strict=True):
@@ -262,24 +265,28 @@ class QueueTable:
             return "interrupted", GONE
         return (row.outcome, row.reason) if row.outcome != RUNNING else ("interrupted", LOST)
 
+    def _found(
+        self, connection: Connection, *where: Any, order: Sequence[Any] = PLACES, limit: int | None = None
+    ) -> list[QueueItem]:
+        query = select(*COLUMNS).where(ITEM.bench == self._bench, *where).order_by(*order).limit(limit)
+        return [QueueItem(**row._asdict()) for row in connection.execute(query)]
+
     def _mine(self, *states: str) -> ColumnElement[bool]:
         return (ITEM.bench == self._bench) & ITEM.state.in_(states)
 
     def _running(self, connection: Connection) -> list[tuple[int, str | None]]:
         """Items that run, each with who runs it."""
         query = select(ITEM.id, ITEM.owner).where(self._mine(RUNNING))
-        return [(row.id, row.owner) for row in connection.execute(query.order_by(ITEM.place, ITEM.id))]
+        return [(row.id, row.owner) for row in connection.execute(query.order_by(*PLACES))]
 
     def _set(self, item_id: int, **values: Any) -> None:
         with self._database.writing() as connection:
             connection.execute(update(QUEUE_ITEM).where(ITEM.id == item_id).values(**values))
 
     def _get(self, connection: Connection, item_id: int) -> QueueItem:
-        query = select(*COLUMNS).where(ITEM.bench == self._bench, ITEM.id == item_id)
-        row = connection.execute(query).one_or_none()
-        if row is None:
-            raise NotFoundError(f"item {item_id} is not in the queue; list the queue to see what is")
-        return _item(row)
+        for found in self._found(connection, ITEM.id == item_id):
+            return found
+        raise NotFoundError(f"item {item_id} is not in the queue; list the queue to see what is")
 
     def _get_waiting(self, connection: Connection, item_id: int) -> None:
         found = self._get(connection, item_id)
@@ -289,7 +296,3 @@ class QueueTable:
 
 def _count(which: ColumnElement[bool]) -> Select[int]:
     return select(func.count()).select_from(QUEUE_ITEM).where(which)
-
-
-def _item(row: Row[Any]) -> QueueItem:
-    return QueueItem(**row._asdict())

@@ -57,30 +57,35 @@ def search(connection: Connection, wanted: TrialQuery, limit: int, offset: int) 
         raise StoreValueError(f"sort is '{wanted.sort}'; wanted is one of {', '.join(SORTED_BY)}")
     if len(wanted.words) > MOST_WORDS:
         raise StoreValueError(f"found {len(wanted.words)} words; wanted at most {MOST_WORDS}")
-    filters, words = _filters(connection, wanted), _words(connection, wanted.words)
+    where, words = filters(connection, wanted), _words(connection, wanted.words)
     key = SORTED_BY[wanted.sort]
     order = [column.desc() if wanted.descending else column.asc() for column in dict.fromkeys((key, TRIAL.c.id))]
-    found = select(TRIAL.c.id).where(*filters, *words).order_by(*order)
+    found = select(TRIAL.c.id).where(*where, *words).order_by(*order)
     if words:  # every trial is looked at once: counting them apart would look again
         ids = connection.execute(found).scalars().all()
         return list(ids[offset : offset + limit]), len(ids)
-    count = connection.execute(select(func.count()).select_from(TRIAL).where(*filters)).scalar_one()
+    count = connection.execute(select(func.count()).select_from(TRIAL).where(*where)).scalar_one()
     return list(connection.execute(found.limit(limit).offset(offset)).scalars()), int(count)
 
 
-def _filters(connection: Connection, wanted: TrialQuery) -> list[ColumnElement[bool]]:
-    filters = condition_rows.match_all(wanted.conditions)
+def filters(connection: Connection, wanted: TrialQuery) -> list[ColumnElement[bool]]:
+    """All that is looked for, but for words.
+
+    Raises:
+        StoreValueError: a value that no condition can have.
+    """
+    found = condition_rows.match_all(wanted.conditions)
     hidden = list(connection.execute(select(EXPERIMENT.c.id).where(EXPERIMENT.c.outcome.in_(HIDDEN))).scalars())
     if hidden:
-        filters.append(not_(TRIAL.c.experiment_id.in_(hidden)))
+        found.append(not_(TRIAL.c.experiment_id.in_(hidden)))
     for column, value in (("experiment_id", wanted.experiment_id), ("kind", wanted.kind), ("outcome", wanted.outcome)):
         if value is not None:
-            filters.append(TRIAL.c[column] == value)
+            found.append(TRIAL.c[column] == value)
     if wanted.begun is not None:
         first, end = wanted.begun
         begun = select(EXPERIMENT.c.id).where(EXPERIMENT.c.started_utc >= first, EXPERIMENT.c.started_utc < end)
-        filters.append(TRIAL.c.experiment_id.in_(begun))
-    return filters
+        found.append(TRIAL.c.experiment_id.in_(begun))
+    return found
 
 
 def _words(connection: Connection, words: Sequence[str]) -> list[ColumnElement[bool]]:

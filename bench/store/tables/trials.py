@@ -13,7 +13,7 @@ from bench.store.records import HIDDEN, Condition, Event, Trial
 from bench.store.schema import EVENT, EXPERIMENT, TRIAL
 from bench.store.tables import chain
 from bench.store.tables import conditions as condition_rows
-from bench.store.tables.experiments import check_outcome, insert_row, now
+from bench.store.tables.experiments import check_outcome, insert_row, now, row_of
 
 
 def add(
@@ -89,9 +89,7 @@ def get(connection: Connection, trial_id: int) -> Trial:
         NotFoundError: no such trial.
     """
     query = select(TRIAL).where(TRIAL.c.id == trial_id, TRIAL.c.outcome.not_in(HIDDEN))
-    row = connection.execute(query).one_or_none()
-    if row is None:
-        raise NotFoundError(f"trial {trial_id} is not in the store; list the trials to see which are")
+    row = row_of(connection, query, f"trial {trial_id}", "trials")
     return record(row, condition_rows.of_trials(connection, [row.id]))
 
 

@@ -81,7 +81,8 @@ class Custody:
         if record.outcome != "running":
             return record
         experiment_id = record.id if isinstance(record, Experiment) else record.experiment_id
-        end = self._unwritten.get(experiment_id) or self._noted_by_others().get(experiment_id)
+        # the control loop may be in another process, and the database full or locked for it
+        end = self._unwritten.get(experiment_id) or self._last_words(self._tokens()).get(experiment_id)
         return record if end is None else replace(record, outcome=end[0], reason=end[1])
 
     def write_noted(self) -> None:
@@ -116,10 +117,9 @@ class Custody:
         self._claim.release(keep_note=bool(self._unwritten))
         self._claim = None
 
-    def _noted_by_others(self) -> dict[int, End]:
-        """The control loop may be in another process, and the database full or locked for it."""
+    def _last_words(self, tokens: set[str | None]) -> dict[int, End]:
         noted: dict[int, End] = {}
-        for token in self._tokens():
+        for token in tokens:
             noted |= self._database.backend.last_words(token)
         return noted
 
@@ -135,10 +135,7 @@ class Custody:
     def _settle(self, tokens: set[str | None], reason: str) -> None:
         if not tokens & self._tokens():
             return
-        noted: dict[int, End] = {}
-        for token in tokens:
-            noted |= self._database.backend.last_words(token)
-        hidden = []
+        noted, hidden = self._last_words(tokens), []
         with self._database.writing() as connection:
             for experiment_id, token, outcome in experiments.unfinished(connection):
                 if token not in tokens:

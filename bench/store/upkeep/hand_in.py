@@ -19,6 +19,7 @@ from bench.store.schema import EVENT, EXPERIMENT, EXPERIMENT_TAG, HANDED_IN, SAM
 from bench.store.schema import TRIAL_CONDITION as CONDITION
 from bench.store.tables import chain
 from bench.store.tables.experiments import insert_row
+from bench.store.upkeep.importing import parts
 
 TRANSACTION_BYTES = 4 * 2**20  # what a link that is cut has to send again, at most
 FETCHED = 16
@@ -115,8 +116,8 @@ class HandIn:
             last = select(func.max(table.c.first_row)).where(table.c.trial_id == there)
             with self._lab.reading() as connection:
                 newest = connection.execute(last).scalar()
-            with closing(self._parts(table, trial["id"], -1 if newest is None else newest)) as parts:
-                for part in parts:
+            with closing(self._parts(table, trial["id"], -1 if newest is None else newest)) as blocks:
+                for part in blocks:
                     with self._lab.recording() as connection:
                         connection.execute(insert(table), [{**row, "trial_id": there} for row in part])
         return int(there)
@@ -124,17 +125,9 @@ class HandIn:
     def _parts(self, table: Table, trial_id: int, after: int) -> Generator[list[Row], None, None]:
         """Blocks behind a row, so many at a time as one transaction takes."""
         query = select(table).where(table.c.trial_id == trial_id, table.c.first_row > after).order_by(table.c.first_row)
-        part: list[Row] = []
-        size = 0
         with self._bench.reading() as connection:
-            for row in connection.execute(query, execution_options={"yield_per": FETCHED}):
-                part.append(row._asdict())
-                size += len(row.data)
-                if size >= TRANSACTION_BYTES:
-                    yield part
-                    part, size = [], 0
-        if part:
-            yield part
+            found = (row._asdict() for row in connection.execute(query, execution_options={"yield_per": FETCHED}))
+            yield from parts(found, lambda row: len(row["data"]), TRANSACTION_BYTES)
 
     def _finish(self, connection: Connection, origin: _Origin, there: int, trials: dict[int, int]) -> None:
         """All that is small, and the ends; with this it is seen."""

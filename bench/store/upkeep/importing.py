@@ -5,7 +5,8 @@ hashed as soon as it is there, as it will be when it is seen, and outside any tr
 enters in the chain what is known.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping
+from typing import TypeVar
 
 from sqlalchemy import bindparam, update
 
@@ -20,6 +21,8 @@ from compensator.lab.recordings.recording import Recording
 
 TRANSACTION_BYTES = 16 * 2**20  # a bench that records meanwhile waits for one of these, not for the whole
 EVENT_BYTES = 2048  # bytes of samples that take as long to write as an event
+
+ItemT = TypeVar("ItemT")
 
 
 class Import:
@@ -47,7 +50,7 @@ class Import:
         what = (recording.name, recording.kind, recording.conditions, tuple(recording.channels))
         with self._database.writing() as connection:
             trial_id = trials.add(connection, self.experiment_id, *what, outcome=IMPORTING)
-        for events in _parts(recording.events):
+        for events in parts(recording.events, _event_bytes, TRANSACTION_BYTES):
             with self._database.recording() as connection:
                 trials.add_events(connection, trial_id, events)
         share = max(1, TRANSACTION_BYTES // (8 * max(1, len(recording.channels))))
@@ -82,14 +85,18 @@ class Import:
         self._ends.append({"trial": trial_id, **{f"its_{name}": value for name, value in end.items()}})
 
 
-def _parts(events: Sequence[Event]) -> Iterator[list[Event]]:
-    """So many of them at a time as one transaction takes."""
-    part: list[Event] = []
+def _event_bytes(event: Event) -> int:
+    return EVENT_BYTES + len(event.name) + len(event.detail)
+
+
+def parts(items: Iterable[ItemT], size_of: Callable[[ItemT], int], most: int) -> Generator[list[ItemT], None, None]:
+    """So many of some items at a time as one transaction takes: the one that makes it full is the last."""
+    part: list[ItemT] = []
     size = 0
-    for event in events:
-        part.append(event)
-        size += EVENT_BYTES + len(event.name) + len(event.detail)
-        if size >= TRANSACTION_BYTES:
+    for item in items:
+        part.append(item)
+        size += size_of(item)
+        if size >= most:
             yield part
             part, size = [], 0
     if part:

@@ -3,10 +3,11 @@
 from sqlalchemy import Connection, delete, func, select
 
 from bench.store.database import Database
-from bench.store.errors import NotFoundError, StoreStateError
+from bench.store.errors import StoreStateError
 from bench.store.records import HIDDEN
 from bench.store.schema import CALIBRATION, EXPERIMENT, MODEL, STUDY, TRIAL
 from bench.store.tables import chain
+from bench.store.tables.experiments import row_of
 from bench.store.upkeep.retention import mark, remove, uses
 
 
@@ -56,9 +57,7 @@ class Removal:
 def _unused_experiment(connection: Connection, experiment_id: int) -> str:
     own = EXPERIMENT.c
     query = select(own.kind, own.outcome).where(own.id == experiment_id, own.outcome.not_in(HIDDEN))
-    found = connection.execute(query).one_or_none()
-    if found is None:
-        raise NotFoundError(f"experiment {experiment_id} is not in the store; list the experiments to see which are")
+    found = row_of(connection, query, f"experiment {experiment_id}", "experiments")
     if found.outcome == "running":
         raise StoreStateError(f"experiment {experiment_id} is running; stop it, or wait for its end, then remove it")
     users = uses(connection).get(experiment_id, ())
@@ -75,9 +74,8 @@ def _unused_experiment(connection: Connection, experiment_id: int) -> str:
 
 
 def _unused_study(connection: Connection, study_id: int) -> str:
-    name = connection.execute(select(STUDY.c.name).where(STUDY.c.id == study_id)).scalar_one_or_none()
-    if name is None:
-        raise NotFoundError(f"study {study_id} is not in the store; list the studies to see which are")
+    query = select(STUDY.c.name).where(STUDY.c.id == study_id)
+    name = row_of(connection, query, f"study {study_id}", "studies").name
     calibrations = connection.execute(select(CALIBRATION.c.id, CALIBRATION.c.result).order_by(CALIBRATION.c.id))
     users = [str(row.id) for row in calibrations if (row.result.get("study") or {}).get("study_id") == study_id]
     if users:

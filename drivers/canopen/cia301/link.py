@@ -4,23 +4,19 @@ Everything that comes in is handed out by `receive` and `drain` in the control l
 thread: no frame waits for a thread switch, and what a handler raises is raised in the loop.
 """
 
-import errno
 import struct
-import time
-from time import perf_counter
 from typing import TYPE_CHECKING
 
 import can
 import canopen
 
+from drivers.can_bus.bus import is_full, send
 from drivers.canopen.cia301.bus import BusPort
 from drivers.errors import DriveConnectionError
 
 if TYPE_CHECKING:
     from drivers.canopen.cia301.sync_cycle import SyncCycle
 
-_SEND_S = 0.02  # longest wait for room in the transmit buffer
-_RETRY_S = 0.0005
 _MOST_WAITING = 2000  # frames taken in at once: a babbling node must not hold the loop
 _BUS_OFF = 0x40  # error class of a SocketCAN error frame (linux/can/error.h)
 
@@ -30,7 +26,6 @@ class CanLink(canopen.Network):
 
     Attributes:
         garbled: frames that could not be read, or were not what their COB-ID promises.
-        waited: sends that found the transmit buffer full and were repeated.
         cycle: of the drive; None before it has one.
         host_id: node ID of this host towards the drive; None before it has one.
         load: bytes of the frames of a cycle of the drive.
@@ -42,7 +37,6 @@ class CanLink(canopen.Network):
         self._device = device
         self._echoes = port.echoes
         self.garbled = 0
-        self.waited = 0
         self.cycle: SyncCycle | None = None
         self.host_id: int | None = None
         self.load: tuple[int, ...] = ()
@@ -73,19 +67,12 @@ class CanLink(canopen.Network):
         """Send a frame that was made before; as `send_message`."""
         if self.bus is None:
             raise DriveConnectionError(self._device, "the bus is closed; open the drive first")
-        deadline_s = 0.0
-        while True:
-            try:
-                self.bus.send(message, _SEND_S)
-                if self._echoes is not None:
-                    self._echoes[message.arbitration_id, bytes(message.data)] += 1
-                return
-            except (can.CanError, OSError) as error:
-                deadline_s = deadline_s or perf_counter() + _SEND_S
-                if not _buffer_full(error) or perf_counter() > deadline_s:
-                    raise self._lost("sending", error) from error
-                self.waited += 1
-                time.sleep(_RETRY_S)
+        try:
+            send(self.bus, message)
+        except (can.CanError, OSError) as error:
+            raise self._lost("sending", error) from error
+        if self._echoes is not None:
+            self._echoes[message.arbitration_id, bytes(message.data)] += 1
 
     def receive(self, timeout_s: float) -> bool:
         """Wait for one frame, and hand it to its handler.
@@ -148,7 +135,7 @@ class CanLink(canopen.Network):
 
     def _lost(self, doing: str, error: Exception) -> DriveConnectionError:
         what = f"the adapter is gone, or broken ({error})"
-        if _buffer_full(error):
+        if is_full(error):
             what = "the transmit buffer stays full: nobody acknowledges"
         return DriveConnectionError(
             self._device, f"{doing} failed: {what}; check cable, adapter and bit rate, then open the drive again"
@@ -158,8 +145,3 @@ class CanLink(canopen.Network):
 def prepare(can_id: int, data: bytes, remote: bool = False) -> can.Message:
     """A frame for `CanLink.send_prepared`, which may be sent often."""
     return can.Message(arbitration_id=can_id, data=data, is_extended_id=False, is_remote_frame=remote)
-
-
-def _buffer_full(error: Exception) -> bool:
-    code = getattr(error, "error_code", None) or getattr(error, "errno", None)
-    return code in (errno.ENOBUFS, errno.EAGAIN) or "buffer full" in str(error).lower()

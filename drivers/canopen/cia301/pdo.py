@@ -53,25 +53,20 @@ class Pdo:
     cob_id: int
     layout: PdoLayout
 
-    def _communication(self, subindex: int, kind: DataType, name: str) -> DriveObject:
-        return communication(self.number, self.transmit, subindex, kind, name)
-
-    def _entry(self, subindex: int) -> DriveObject:
-        return mapping_entry(self.number, self.transmit, subindex)
-
     def writes(self, with_mapping: bool = True) -> list[Write]:
         """How it is configured: off, transmission type, no entries, the entries, their number, on.
 
         Args:
             with_mapping: False where the mapping is as wanted already; it may be one that cannot be written.
         """
-        cob_id = self._communication(1, DataType.U32, "COB-ID")
+        which = self.number, self.transmit
+        cob_id, count = cob_id_entry(*which), mapping_entry(*which, 0)
         flags = NO_RTR if self.transmit else 0
-        entries = [Write(self._entry(place), entry.mapping) for place, entry in enumerate(self.layout.entries, 1)]
+        entries = [Write(mapping_entry(*which, place), one.mapping) for place, one in enumerate(self.layout.entries, 1)]
         return [
             Write(cob_id, INVALID | flags | self.cob_id),
-            Write(self._communication(2, DataType.U8, "transmission type"), SYNCHRONOUS),
-            *([Write(self._entry(0), 0), *entries, Write(self._entry(0), len(entries))] if with_mapping else []),
+            Write(communication(*which, 2, DataType.U8, "transmission type"), SYNCHRONOUS),
+            *([Write(count, 0), *entries, Write(count, len(entries))] if with_mapping else []),
             Write(cob_id, flags | self.cob_id),
         ]
 
@@ -87,6 +82,11 @@ def communication(number: int, transmit: bool, subindex: int, kind: DataType, na
     """An entry of a PDO's communication record."""
     index = (0x1800 if transmit else 0x1400) + number - 1
     return DriveObject(index, subindex, kind, f"{name} of {'TPDO' if transmit else 'RPDO'}{number}")
+
+
+def cob_id_entry(number: int, transmit: bool) -> DriveObject:
+    """The entry of a PDO's COB-ID."""
+    return communication(number, transmit, 1, DataType.U32, "COB-ID")
 
 
 def mapping_entry(number: int, transmit: bool, subindex: int) -> DriveObject:

@@ -6,7 +6,7 @@ from typing import Final
 
 from drivers.canopen.cia301.object_access import ObjectAccess, ObjectRefusedError
 from drivers.canopen.cia301.objects import DataType, DriveObject
-from drivers.canopen.cia301.pdo import INVALID, Pdo, communication, mapping_entry, same
+from drivers.canopen.cia301.pdo import INVALID, Pdo, cob_id_entry, communication, mapping_entry, same
 from drivers.errors import DriveConfigurationError
 
 MOST_PDOS: Final = 8  # of each kind that CiA 402 has a default for
@@ -37,7 +37,7 @@ def read_slots(access: ObjectAccess, transmit: bool) -> list[Slot]:
 
 
 def _read_slot(access: ObjectAccess, number: int, transmit: bool) -> Slot | None:
-    cob_id = access.read_if_present(_cob_id(number, transmit))
+    cob_id = access.read_if_present(cob_id_entry(number, transmit))
     count = None if cob_id is None else access.read_if_present(mapping_entry(number, transmit, 0))
     if cob_id is None or count is None:
         return None
@@ -93,14 +93,10 @@ def _zero(access: ObjectAccess, item: DriveObject) -> None:
 
 def switch_off(access: ObjectAccess, number: int, transmit: bool) -> None:
     """Have a PDO not exist, where the drive lets that be set."""
-    cob_id = _cob_id(number, transmit)
+    cob_id = cob_id_entry(number, transmit)
     try:
         found = access.read_if_present(cob_id)
         if found is not None and not found & INVALID:
             access.write(cob_id, found | INVALID)
     except ObjectRefusedError:
         return  # a PDO that cannot be switched off does no harm
-
-
-def _cob_id(number: int, transmit: bool) -> DriveObject:
-    return communication(number, transmit, 1, DataType.U32, "COB-ID")

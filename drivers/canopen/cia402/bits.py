@@ -7,9 +7,10 @@ whichever output it is wired to.
 
 import struct
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal
 
 from drivers.canopen.cia301.objects import DataType, DriveObject
+from drivers.settings import Settings, quantity
 
 OUTPUTS: Final = DriveObject(0x60FE, 1, DataType.U32, "physical outputs")
 OUTPUT_MASK: Final = DriveObject(0x60FE, 2, DataType.U32, "bit mask of the outputs")  # many drives have none
@@ -43,26 +44,13 @@ def download(outputs: int) -> bytes:
     return struct.pack("<BHBI", _DOWNLOAD_4, OUTPUTS.index, OUTPUTS.subindex, outputs)
 
 
-@dataclass(frozen=True, slots=True)
-class TorqueOffBit:
-    """One bit of an object.
+class TorqueOffSettings(Settings):
+    """One bit of an object of the drive, by its manual."""
 
-    Attributes:
-        index, subindex: of the object; 0x60FD are the digital inputs.
-        bit: counted from 0.
-        level: of the bit while safe torque off is active.
-    """
-
-    index: int
-    subindex: int = 0
-    bit: int = 0
-    level: int = 1
-
-    @property
-    def is_possible(self) -> bool:
-        """Whether there can be such a bit."""
-        place = 0x1000 <= self.index <= 0xFFFF and 0 <= self.subindex <= 0xFF
-        return place and 0 <= self.bit <= 31 and self.level in (0, 1)
+    index: int = quantity(..., "", "Index of the object; 0x60FD are the digital inputs", ge=0x1000, le=0xFFFF)
+    subindex: int = quantity(0, "", "Its subindex", ge=0, le=255)
+    bit: int = quantity(..., "", "Number of the bit, from 0", ge=0, le=31)
+    level: Literal[0, 1] = quantity(1, "", "The bit while safe torque off is active")
 
     def holds(self, value: int) -> bool:
         """Whether a value of the object says that it is active."""

@@ -27,10 +27,10 @@ from drivers.canopen.cia301.objects import (
     DriveObject,
 )
 from drivers.canopen.cia402.units import (
+    VELOCITY_CODES,
     acceleration_unit_rad_s2,
     angle_rad,
     is_increments,
-    velocity_unit_code,
     velocity_unit_name,
     velocity_unit_rad_s,
 )
@@ -157,7 +157,7 @@ def _check_positions(told: list[_Told], settings: CanopenSettings, counts_per_tu
 
 def _velocity(told: list[_Told], settings: CanopenSettings, counts_per_turn: float) -> float:
     if settings.velocity_unit is not None:
-        configured = velocity_unit_rad_s(velocity_unit_code(settings.velocity_unit), counts_per_turn)
+        configured = velocity_unit_rad_s(VELOCITY_CODES[settings.velocity_unit], counts_per_turn)
         assert configured is not None
         if told and not settings.units_from_configuration and not any(_same(one.value, configured) for one in told):
             raise DriveConfigurationError(

@@ -72,12 +72,12 @@ def set_up(table: ObjectTable, scale: DriveScale, homing: DriveHoming) -> None:
     Raises:
         DriveConfigurationError: it refuses a value, above all a method that it does not have.
     """
-    unit = abs(scale.velocity_rad_s)  # of accelerations too: CiA 402 gives them no unit of their own
+    speed_unit = abs(scale.velocity_rad_s)
     table.set(HOMING_METHOD, homing.method, _PURPOSE)
-    for item, value in (
-        (HOMING_SPEED_SWITCH, homing.speed_rad_s),
-        (HOMING_SPEED_ZERO, homing.slow_speed_rad_s),
-        (HOMING_ACCELERATION, homing.acceleration_rad_s2),
+    for item, value, unit in (
+        (HOMING_SPEED_SWITCH, homing.speed_rad_s, speed_unit),
+        (HOMING_SPEED_ZERO, homing.slow_speed_rad_s, speed_unit),
+        (HOMING_ACCELERATION, homing.acceleration_rad_s2, scale.acceleration_rad_s2),
     ):
         table.set(item, max(round(value / unit), 1), _PURPOSE)
     # drives differ in whether home is the offset, or minus it

@@ -105,17 +105,16 @@ class ModeChoice:
 
     def _profile(self, code: int) -> str:
         """Have speed and acceleration of a profile; why that cannot be, "" where it can."""
-        settings = self._settings
-        speed = [(PROFILE_VELOCITY, settings.profile_speed_rad_s, "profile_speed_rad_s")]
+        settings, scale = self._settings, self._scale
+        speed = [(PROFILE_VELOCITY, settings.profile_speed_rad_s, "profile_speed_rad_s", abs(scale.velocity_rad_s))]
         ramps = [
-            (item, settings.profile_acceleration_rad_s2, "profile_acceleration_rad_s2")
+            (item, settings.profile_acceleration_rad_s2, "profile_acceleration_rad_s2", scale.acceleration_rad_s2)
             for item in (PROFILE_ACCELERATION, PROFILE_DECELERATION)
         ]
         steps = (self._set_profile(*one) for one in (speed if code == PROFILE_POSITION else []) + ramps)
         return "; ".join(filter(None, steps))
 
-    def _set_profile(self, item: DriveObject, value: float | None, setting: str) -> str:
-        unit = abs(self._scale.velocity_rad_s)  # of accelerations too: CiA 402 gives them no unit of their own
+    def _set_profile(self, item: DriveObject, value: float | None, setting: str, unit: float) -> str:
         found = self._table.ask(item, _PURPOSE)
         if found is None or (found and value is None):
             return ""

@@ -31,9 +31,15 @@ class DriveScale:
         return self.joint.encoder_sign * self.velocity_unit_rad_s / self.joint.gear_ratio
 
     @property
+    def tells_acceleration(self) -> bool:
+        """Whether the drive tells its unit of acceleration."""
+        return not isnan(self.acceleration_unit_rad_s2)
+
+    @property
     def acceleration_rad_s2(self) -> float:
-        """One count of acceleration at the joint [rad/s2], with the encoder's sign."""
-        return self.joint.encoder_sign * self.acceleration_unit_rad_s2 / self.joint.gear_ratio
+        """One count of acceleration at the joint [rad/s2], without sign; of velocity a second where it is not told."""
+        unit = self.acceleration_unit_rad_s2 if self.tells_acceleration else self.velocity_unit_rad_s
+        return abs(unit / self.joint.gear_ratio)
 
     def current_a(self, item: DriveObject) -> float:
         """One count of an object that tells a motor current [A], without sign."""

@@ -50,10 +50,8 @@ def set_up_stopping(table: ObjectTable, scale: DriveScale, speed_rad_s: float) -
         scale: of drive and joint.
         speed_rad_s: of the joint, from which it has to stop [rad/s].
     """
-    is_told = not isnan(scale.acceleration_rad_s2)
-    unit_rad_s2 = abs(scale.acceleration_rad_s2 if is_told else scale.velocity_rad_s)  # usual: velocity a second
-    time_s, why_not = _set_up_ramp(table, unit_rad_s2, speed_rad_s)
-    is_sure = time_s <= (RAMP_S if is_told else RAMP_S / _MISTAKE)
+    time_s, why_not = _set_up_ramp(table, scale.acceleration_rad_s2, speed_rad_s)
+    is_sure = time_s <= (RAMP_S if scale.tells_acceleration else RAMP_S / _MISTAKE)
     ends = _set_up_option(table, QUICK_STOP_OPTION, not why_not)
     words = f"A stop from {speed_rad_s:g} rad/s takes {time_s:.2g} s on the drive's ramp (0x6085); then power-off."
     if isnan(time_s):

@@ -1,15 +1,17 @@
 """Units of CiA 402 objects: 0x60A8, 0x60A9 and 0x60AA (codes of CiA 303-2), 0x60C2. Pure."""
 
 from math import pi
+from typing import Literal, get_args
 
-VELOCITY_UNITS = ("rpm", "0.1 rpm", "0.01 rpm", "0.001 rpm", "counts/s", "rad/s", "deg/s")
+VelocityUnit = Literal["rpm", "0.1 rpm", "0.01 rpm", "0.001 rpm", "counts/s", "rad/s", "deg/s"]
+VELOCITY_UNITS: tuple[str, ...] = get_args(VelocityUnit)
 """Names of velocity units that the settings know."""
 
 _REVOLUTION, _INCREMENT, _RADIAN, _DEGREE = 0xB4, 0xB5, 0x10, 0x41
 _TIMES_S = {0x03: 1.0, 0x47: 60.0}
 _SECOND, _SECOND_SQUARED, _RPM = 0x03, 0x57, 0xC0  # of accelerations; maxon has "rpm a second"
 
-_CODES = {
+VELOCITY_CODES = {
     "rpm": 0x00B4_4700,
     "0.1 rpm": 0xFFB4_4700,
     "0.01 rpm": 0xFEB4_4700,
@@ -18,6 +20,7 @@ _CODES = {
     "rad/s": 0x0010_0300,
     "deg/s": 0x0041_0300,
 }
+"""Codes of 0x60A9."""
 
 
 def angle_rad(code: int) -> float | None:
@@ -72,14 +75,9 @@ def _exponent(code: int) -> int:
     return exponent - 256 if exponent > 127 else exponent
 
 
-def velocity_unit_code(name: str) -> int:
-    """The code of 0x60A9 for a name of `VELOCITY_UNITS`."""
-    return _CODES[name]
-
-
 def velocity_unit_name(code: int) -> str:
     """The name of a code of 0x60A9; the code itself where it has none here."""
-    return next((name for name, known in _CODES.items() if known == code), f"0x{code:08X}")
+    return next((name for name, known in VELOCITY_CODES.items() if known == code), f"0x{code:08X}")
 
 
 def interpolation_periods(period_s: float, exponent: int | None) -> list[tuple[int, int]]:

@@ -1,19 +1,20 @@
 """The node on a python-can bus: virtual in one process, socketcan where the kernel has it."""
 
-import threading
 from contextlib import suppress
 from typing import Any
 
 import can
 
 from sim_backend.devices.can.frame import CanDevice, Frame
+from sim_backend.devices.can.stream_port import CanDevicePort
+from sim_backend.devices.link.line import Line
 from sim_backend.devices.wall_time import WallTime
 
 _LOOK_UP_S = 0.05  # how soon the thread notices that it shall end
 
 
-class BusPort(threading.Thread):
-    """A thread that receives for a device, and its way to send.
+class BusPort(CanDevicePort):
+    """A thread that receives for a device, and its way to send. No fault of a line strikes it.
 
     Args:
         device: what is on the bus.
@@ -31,48 +32,33 @@ class BusPort(threading.Thread):
         channel: str,
         more: dict[str, Any] | None = None,
     ) -> None:
-        super().__init__(name="device CAN bus", daemon=True)
-        self._device = device
-        self._clock = clock
         self._bus = can.Bus(interface=interface, channel=channel, ignore_config=True, **(more or {}))
-        self._closing = threading.Event()
+        super().__init__(device, clock, Line(), "device CAN bus")
         self.path = channel
-        self.error: BaseException | None = None
-        device.node.send = self._send
-
-    def run(self) -> None:
-        """Receive until `close`."""
-        with self._device.lock:
-            self._device.node.boot()
-        try:
-            while not self._closing.is_set():
-                message = self._bus.recv(_LOOK_UP_S)
-                if message is not None and not message.is_error_frame:
-                    self._receive(message)
-        except BaseException as error:
-            self.error = error
-            raise
 
     def close(self) -> None:
         """End the thread and leave the bus."""
-        self._closing.set()
-        if self.is_alive():
-            self.join()
+        super().close()
         with self._device.lock:
             self._device.node.send = lambda _frame: None
         self._bus.shutdown()
 
+    def _serve(self) -> None:
+        message = self._bus.recv(_LOOK_UP_S)
+        if message is not None and not message.is_error_frame:
+            self._receive(message)
+
     def _receive(self, message: can.Message) -> None:
+        self._clock.hear()
         frame = Frame(
             message.arbitration_id, bytes(message.data), message.is_remote_frame, message.is_extended_id, message.is_fd
         )
-        self._clock.hear()
-        with self._device.lock:
-            now_s = self._clock.now_s()
-            self._device.advance_to(now_s)
-            self._device.receive(frame, now_s)
+        self._deliver(frame)
 
-    def _send(self, frame: Frame) -> None:
+    def _unplug(self) -> None:
+        """The bus stays."""
+
+    def _tell(self, frame: Frame) -> None:
         message = can.Message(
             arbitration_id=frame.can_id,
             data=frame.data,

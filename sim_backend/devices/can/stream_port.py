@@ -15,7 +15,7 @@ from sim_backend.devices.link.pseudo_terminal import PseudoTerminal, Unwritten
 from sim_backend.devices.wall_time import WallTime
 
 
-class _Port(PortThread):
+class CanDevicePort(PortThread):
     """The device's bus, and the thread that reads."""
 
     def __init__(self, device: CanDevice, clock: WallTime, line: Line, name: str) -> None:
@@ -38,7 +38,7 @@ class _Port(PortThread):
         """Tell hosts of a frame of the device's."""
 
 
-class SlcanPort(_Port):
+class SlcanPort(CanDevicePort):
     """An slcan adapter on a pseudo-terminal.
 
     Args:
@@ -80,7 +80,7 @@ class SlcanPort(_Port):
             self._stream.tell(frame)
 
 
-class SocketcandPort(_Port):
+class SocketcandPort(CanDevicePort):
     """A socketcand server on the loopback interface. Hosts see the device and each other, as on one bus.
 
     Args:

@@ -28,18 +28,13 @@ from sim_backend.devices.canopen.state_machine import (
     command_of,
     is_quick_stop_code,
 )
-from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.faults.script import tripped
 from sim_backend.plant.parameters import PlantParameters
 
 _REMOTE, _LIMITED, _WARNING, _VOLTAGE = 1 << 9, 1 << 11, 1 << 7, 1 << 4
 _FOLLOWING_ERROR = 1 << 13
 _INTERLOCK = 1 << 3  # of 0x60FD: safe torque off is active
 _WARM_C = 85.0
-_CODES: dict[type[Trip], ErrorCode] = {
-    OverCurrent: ErrorCode.OVER_CURRENT,
-    SupplyLost: ErrorCode.UNDER_VOLTAGE,
-    OverTemperature: ErrorCode.OVER_TEMPERATURE,
-}
 
 
 class ServoDrive(Device):
@@ -68,7 +63,7 @@ class ServoDrive(Device):
         self._measured = Measured(self.axis, self.dictionary, family, rating)
         self._loop = PositionLoop(Gains.tuned(parameters, rating.torque_n_m))
         self._braking = Braking(self._loop)
-        units = Units(self._measured.counts, self._measured.counts_per_s)
+        units = Units(self._measured.counts, self._measured.counts_per_s, self._measured.counts_per_s2)
         self._modes = make_modes(family.modes, self.dictionary, self._loop, units, self.axis, rating.counts_per_turn)
         self._machine = StateMachine(self._option)
         self._wire()
@@ -156,7 +151,7 @@ class ServoDrive(Device):
             self._braking.start(seen)
         if self._braking.done:
             self._set_own_brake()
-        deceleration = self._measured.counts_per_s(self.dictionary.number(ending.ramp.value))
+        deceleration = self._measured.counts_per_s2(self.dictionary.number(ending.ramp.value))
         return self._braking.torque(seen, deceleration)
 
     def _set_own_brake(self) -> None:
@@ -229,7 +224,10 @@ class ServoDrive(Device):
     def _meet_faults(self) -> None:
         trip = self.axis.trip()
         if trip is not None:
-            self._fault(_CODES.get(type(trip), ErrorCode.GENERIC), at_once=True)
+            code = tripped(
+                trip, ErrorCode.OVER_TEMPERATURE, ErrorCode.OVER_CURRENT, ErrorCode.UNDER_VOLTAGE, ErrorCode.GENERIC
+            )
+            self._fault(ErrorCode(code), at_once=True)
         elif self.axis.torque_is_disabled():
             self._obey()
             self._machine.lose_torque()

@@ -22,6 +22,7 @@ class Measured:
         self._constant_n_m_a = rating.torque_constant_n_m_a
         counts_per_rad = rating.counts_per_turn / (2.0 * pi)
         self._unit_counts_per_s = family.velocity_rad_s(rating.counts_per_turn) * counts_per_rad
+        self._unit_counts_per_s2 = family.acceleration_rad_s2(rating.counts_per_turn) * counts_per_rad
         self._unit_counts = family.position_rad(rating.counts_per_turn) * counts_per_rad
         self._own = family.own_objects
         self._current_a = 0.0  # averaged
@@ -36,6 +37,10 @@ class Measured:
     def counts_per_s(self, velocity: float) -> float:
         """Return the speed of a number in the drive's unit of velocity."""
         return velocity * self._unit_counts_per_s
+
+    def counts_per_s2(self, acceleration: float) -> float:
+        """Return the acceleration of a number in the drive's unit of acceleration."""
+        return acceleration * self._unit_counts_per_s2
 
     def counts(self, position: float) -> float:
         """Return the encoder's counts of a number in the drive's unit of position."""

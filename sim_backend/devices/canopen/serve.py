@@ -60,7 +60,9 @@ def serve_canopen(settings: CanOpenSettings) -> RunningDrive:
     family = _family(settings.family) if settings.eds is None else family_of(read_data_sheet(settings.eds))
     node_id = settings.node_id or family.node_id or DEFAULT_NODE
     drive = ServoDrive(parameters, family, node_id, settings.seed, settings.conduct)
-    return RunningDrive(drive, port_of(drive, settings), settings.side_port, settings.patience_s)
+    return RunningDrive(
+        drive, port_of(drive, settings, settings.interface, settings.channel), settings.side_port, settings.patience_s
+    )
 
 
 def data_sheet(family: str) -> str:

@@ -8,7 +8,7 @@ from drivers.contract import Sample
 from sim_backend.devices.axis import BRAKE, CURRENT, OFF, VOLTAGE, Axis, Demand, Device
 from sim_backend.devices.modbus.own_map import COMMAND_BLOCK, DEFAULTS, REGISTERS, identity
 from sim_backend.devices.modbus.register_file import ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refused, RegisterFile
-from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.faults.script import tripped
 from sim_backend.plant.parameters import PlantParameters
 
 READS, WRITES = frozenset({3, 4, 23}), frozenset({6, 16, 23})
@@ -44,11 +44,6 @@ class Fault(IntEnum):
     INTERNAL = 5
 
 
-_FAULTS: dict[type[Trip], Fault] = {
-    OverCurrent: Fault.OVER_CURRENT,
-    SupplyLost: Fault.UNDER_VOLTAGE,
-    OverTemperature: Fault.OVER_TEMPERATURE,
-}
 _LIMITED, _DISABLED, _WARM = 1 << 3, 1 << 4, 1 << 5
 
 
@@ -162,7 +157,8 @@ class OwnDrive(Device):
     def _watch(self) -> None:
         trip = self.axis.trip()
         if trip is not None:
-            self._fail(_FAULTS.get(type(trip), Fault.INTERNAL))
+            found = tripped(trip, Fault.OVER_TEMPERATURE, Fault.OVER_CURRENT, Fault.UNDER_VOLTAGE, Fault.INTERNAL)
+            self._fail(Fault(found))
         elif self.axis.torque_is_disabled() and self._state is not State.FAULT:
             self._state = State.OFF
             self._kept["control"] = Control.OFF

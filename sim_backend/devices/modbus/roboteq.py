@@ -13,7 +13,7 @@ from sim_backend.devices.modbus.register_file import (
     Unanswered,
 )
 from sim_backend.devices.modbus.registers import Kind, from_words, to_words
-from sim_backend.faults.script import OverTemperature, SupplyLost
+from sim_backend.faults.script import tripped
 from sim_backend.plant.parameters import PlantParameters
 
 WATCHDOG_S = 1.0  # RWD of the controller's configuration, as delivered
@@ -115,8 +115,4 @@ class Roboteq(Device):
     def _faults(self) -> int:
         trip = self.axis.trip()
         flags = _EMERGENCY if self.axis.torque_is_disabled() else 0
-        if isinstance(trip, OverTemperature):
-            return flags | _OVERHEAT
-        if isinstance(trip, SupplyLost):
-            return flags | _UNDER_VOLTAGE
-        return flags | (_SHORT if trip is not None else 0)
+        return flags if trip is None else flags | tripped(trip, _OVERHEAT, _SHORT, _UNDER_VOLTAGE, _SHORT)

@@ -1,8 +1,9 @@
 """The adapter's text: `can send ID DATA FLAGS` in, OK and `rcv ID DATA FLAGS` out; several controllers behind it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from threading import RLock
 
+from sim_backend.devices.axis import Device
 from sim_backend.devices.moteus.controller import MoteusController
 
 _LENGTHS = (0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64)
@@ -12,8 +13,35 @@ _TABLE = (
 _LONGEST = 512
 
 
-class FdcanusbAdapter:
-    """Bytes of a host to the controllers, and back. Loads, faults and truth are the first controller's.
+class Controllers(Device):
+    """The controllers of a bus. Loads, faults and truth are the first one's."""
+
+    def __init__(self, controllers: Sequence[MoteusController]) -> None:
+        self.axis = controllers[0].axis
+        self.lock = RLock()
+        self._controllers = controllers
+
+    def advance_to(self, time_s: float) -> None:
+        """Let time pass."""
+        for one in self._controllers:
+            one.axis.advance_to(time_s)
+
+    def report(self) -> dict[str, object]:
+        """Say what the first controller is about."""
+        return self._controllers[0].report()
+
+    def answers(self, can_id: int, data: bytes) -> Iterator[tuple[int, bytes]]:
+        """Yield identifier and data of each frame that answers one."""
+        source, destination = can_id >> 8 & 0x7F, can_id & 0x7F
+        for one in self._controllers:
+            if one.servo_id == destination:
+                answer = one.hear(data, bool(can_id & 0x8000))
+                if answer:
+                    yield one.servo_id << 8 | source, padded(answer)
+
+
+class FdcanusbAdapter(Controllers):
+    """Bytes of a host to the controllers, and back.
 
     Args:
         controllers: on the bus.
@@ -21,15 +49,9 @@ class FdcanusbAdapter:
     """
 
     def __init__(self, controllers: Sequence[MoteusController], is_uart: bool = False) -> None:
-        self.axis = controllers[0].axis
-        self.lock = RLock()
-        self._controllers, self._is_uart = controllers, is_uart
+        super().__init__(controllers)
+        self._is_uart = is_uart
         self._text = b""
-
-    def advance_to(self, time_s: float) -> None:
-        """Let time pass."""
-        for one in self._controllers:
-            one.axis.advance_to(time_s)
 
     def connect(self) -> None:
         """Forget half a line."""
@@ -40,10 +62,6 @@ class FdcanusbAdapter:
         *lines, self._text = (self._text + data).replace(b"\r", b"\n").split(b"\n")
         self._text = self._text[-_LONGEST:]
         return b"".join(self._obey(line) for line in lines if line.strip())
-
-    def report(self) -> dict[str, object]:
-        """Say what the first controller is about."""
-        return self._controllers[0].report()
 
     def _obey(self, line: bytes) -> bytes:
         star = line.rfind(b"*")
@@ -62,19 +80,8 @@ class FdcanusbAdapter:
             return self._line(b"ERR malformed frame")
         if len(data) not in _LENGTHS:
             return self._line(b"ERR malformed frame")
-        return self._line(b"OK") + self._on_bus(can_id, data)
-
-    def _on_bus(self, can_id: int, data: bytes) -> bytes:
-        source, destination = can_id >> 8 & 0x7F, can_id & 0x7F
-        out = b""
-        for one in self._controllers:
-            if one.servo_id != destination:
-                continue
-            answer = one.hear(data, bool(can_id & 0x8000))
-            if answer:
-                text = padded(answer).hex().upper().encode("ascii")
-                out += self._line(b"rcv %X %s E B F" % (one.servo_id << 8 | source, text))
-        return out
+        answers = ((answer_id, told.hex().upper().encode("ascii")) for answer_id, told in self.answers(can_id, data))
+        return self._line(b"OK") + b"".join(self._line(b"rcv %X %s E B F" % answer) for answer in answers)
 
     def _line(self, text: bytes) -> bytes:
         if self._is_uart:

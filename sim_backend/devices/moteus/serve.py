@@ -2,12 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from threading import RLock
 
 from sim_backend.devices.can.frame import Frame, QuietNode
 from sim_backend.devices.can.ports import port_of
 from sim_backend.devices.link.serial_port import ServedOnLine
-from sim_backend.devices.moteus.adapter import FdcanusbAdapter, padded
+from sim_backend.devices.moteus.adapter import Controllers, FdcanusbAdapter
 from sim_backend.devices.moteus.controller import MoteusController
 from sim_backend.devices.process import RunningDevice
 
@@ -28,32 +27,17 @@ class MoteusBusSettings(ServedOnLine):
     is_uart: bool = False
 
 
-class MoteusOnBus:
-    """The controllers of a bus. Loads, faults and truth are the first one's."""
+class MoteusOnBus(Controllers):
+    """The controllers without an adapter."""
 
     def __init__(self, controllers: Sequence[MoteusController]) -> None:
-        self.axis = controllers[0].axis
-        self.lock = RLock()
+        super().__init__(controllers)
         self.node = QuietNode()
-        self._controllers = controllers
-
-    def advance_to(self, time_s: float) -> None:
-        """Let time pass."""
-        for one in self._controllers:
-            one.axis.advance_to(time_s)
 
     def receive(self, frame: Frame, time_s: float) -> None:  # noqa: ARG002
         """Take a frame from the bus."""
-        source, destination = frame.can_id >> 8 & 0x7F, frame.can_id & 0x7F
-        for one in self._controllers:
-            if frame.fd and one.servo_id == destination:
-                answer = one.hear(frame.data, bool(frame.can_id & 0x8000))
-                if answer:
-                    self.node.send(Frame(one.servo_id << 8 | source, padded(answer), extended=True, fd=True))
-
-    def report(self) -> dict[str, object]:
-        """Say what the first controller is about."""
-        return self._controllers[0].report()
+        for can_id, data in self.answers(frame.can_id, frame.data) if frame.fd else ():
+            self.node.send(Frame(can_id, data, extended=True, fd=True))
 
 
 def serve_moteus(settings: MoteusBusSettings) -> RunningDevice:
@@ -69,5 +53,5 @@ def serve_moteus(settings: MoteusBusSettings) -> RunningDevice:
     ]
     if settings.interface:
         on_bus = MoteusOnBus(controllers)
-        return settings.running(on_bus, port_of(on_bus, settings))
+        return settings.running(on_bus, port_of(on_bus, settings, settings.interface, settings.channel))
     return settings.on_pseudo_terminal(FdcanusbAdapter(controllers, settings.is_uart))

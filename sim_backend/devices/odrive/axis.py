@@ -8,7 +8,7 @@ from threading import RLock
 from drivers.contract import Sample
 from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand
 from sim_backend.devices.can.frame import Frame, QuietNode
-from sim_backend.faults.script import OverCurrent, OverTemperature, SupplyLost, Trip
+from sim_backend.faults.script import tripped
 from sim_backend.plant.parameters import PlantParameters
 
 IDLE, CLOSED_LOOP = 1, 8
@@ -94,8 +94,10 @@ class OdriveAxis:
         """Return what the stage does for the coming tick."""
         trip = self.axis.trip()
         wrong = trip is not None or self.axis.torque_is_disabled()
-        self._errors = _error_of(trip) if wrong else 0
-        if wrong:
+        self._errors = 0
+        if wrong:  # an open safe-torque-off circuit is an emergency stop
+            error = tripped(trip, MOTOR_HOT, CURRENT_LIMIT, UNDER_VOLTAGE, DRV_FAULT)
+            self._errors = ESTOP if trip is None else error
             self._disarm(self._errors)
         if self._state != CLOSED_LOOP:
             return OFF
@@ -140,14 +142,3 @@ class OdriveAxis:
     def _estimates(self) -> bytes:
         seen = self.axis.seen
         return pack("<ff", seen.position_rad / self._turn_rad, seen.velocity_rad_s / self._turn_rad)
-
-
-def _error_of(trip: Trip | None) -> int:
-    """Return the error; an open safe-torque-off circuit is an emergency stop."""
-    if isinstance(trip, OverTemperature):
-        return MOTOR_HOT
-    if isinstance(trip, OverCurrent):
-        return CURRENT_LIMIT
-    if isinstance(trip, SupplyLost):
-        return UNDER_VOLTAGE
-    return ESTOP if trip is None else DRV_FAULT

@@ -48,7 +48,8 @@ class Kind(NamedTuple):
 
     def on(self, place: Any, **settings: Any) -> Any:
         """A driver at a bus or a port."""
-        return self.drive(self.settings(place, **{"answer_timeout_s": 0.2, **self.values, **settings}), JOINT)
+        where = {"port": place} if isinstance(place, str) else {"interface": place.interface, "channel": place.channel}
+        return self.drive(self.settings(**{"answer_timeout_s": 0.2, **where, **self.values, **settings}), JOINT)
 
     def drive_of(self, device: Any, **settings: Any) -> Any:
         """The driver of a device that runs in a process of its own."""

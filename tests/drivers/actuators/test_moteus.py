@@ -52,4 +52,4 @@ def test_two_on_one_adapter_are_asked_in_one_go(device):
 def test_without_its_library_the_next_step_is_said(monkeypatch):
     monkeypatch.setitem(sys.modules, "drivers.moteus.actuator", None)
     with pytest.raises(DriveConfigurationError, match=r"pip install 'friction-bench\[moteus\]'"):
-        MoteusDrive(MoteusSettings("port"), JOINT)
+        MoteusDrive(MoteusSettings(port="port"), JOINT)

@@ -46,8 +46,7 @@ def bus_of(kind, serve, count, stack):
 
 
 def on_bus(kind, channel):
-    bus, settings = BusSettings("virtual", channel), {"answer_timeout_s": 0.3}
-    return kind.on("", bus=bus, **settings) if kind is MOTEUS else kind.on(bus, **settings)
+    return kind.on(BusSettings("virtual", channel), answer_timeout_s=0.3)
 
 
 @pytest.mark.parametrize(("kind", "serve", "words"), CASES)

@@ -3,7 +3,9 @@ from math import pi
 
 import pytest
 
-from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+from drivers.can_bus.settings import BusSettings
+from drivers.canopen.drive import CanopenDrive
+from drivers.canopen.settings import CanopenSettings
 from drivers.joint import JointScale
 from tests.drivers.canopen.node_double import NodeDouble
 

@@ -14,7 +14,9 @@ from time import perf_counter
 
 import can
 
-from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+from drivers.can_bus.settings import BusSettings
+from drivers.canopen.drive import CanopenDrive
+from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode
 from drivers.errors import DriveError
 from tests.drivers.canopen.conversation import JOINT, bus_of, started
@@ -50,7 +52,7 @@ PLACES: dict[str, Callable[[], object]] = {
 
 
 def drive_on(bus: BusSettings) -> CanopenDrive:
-    return CanopenDrive(CanopenSettings(bus, node_id=5, watchdog_s=WATCHDOG_S, answer_s=ANSWER_S), JOINT)
+    return CanopenDrive(CanopenSettings(bus=bus, node_id=5, watchdog_s=WATCHDOG_S, answer_s=ANSWER_S), JOINT)
 
 
 def barely(bus: can.BusABC, cycles: int) -> float:

@@ -5,8 +5,11 @@ from dataclasses import replace
 from math import isnan, pi
 
 import pytest
+from pydantic import ValidationError
 
-from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+from drivers.can_bus.settings import BusSettings
+from drivers.canopen.drive import CanopenDrive
+from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveStateError, WatchdogError
 from tests.drivers.canopen.conftest import COUNT_RAD, JOINT
@@ -288,12 +291,24 @@ def test_a_period_that_cannot_be_kept_is_refused(node, drive_of, period_s, match
 @pytest.mark.parametrize(
     ("changes", "match"),
     [
-        ({"node_id": 128}, r"node_id = 128: 1 .. 127 is wanted"),
-        ({"host_node_id": 5}, "host_node_id = 5"),
-        ({"profile": "epos5"}, "auto or cia402 or epos4"),
-        ({"velocity_unit": "rmp"}, "velocity_unit = 'rmp'"),
-        ({"position_mode": "cyclical"}, "cyclic or profile"),
+        ({"node_id": 128}, r"node_id\n.*less than or equal to 127"),
+        ({"profile": "epos5"}, "'auto', 'cia402' or 'epos4'"),
+        ({"velocity_unit": "rmp"}, r"velocity_unit\n.*'rpm'"),
+        ({"position_mode": "cyclical"}, "'cyclic', 'profile'"),
+    ],
+)
+def test_values_that_no_drive_has_are_refused(settings_of, changes, match):
+    with pytest.raises(ValidationError, match=match):
+        settings_of(**changes)
+
+
+@pytest.mark.parametrize(
+    ("changes", "match"),
+    [
+        ({"host_node_id": 5}, "host_node_id = 5: 1 .. 127, not the drive's is wanted"),
         ({"answer_s": 0.2}, "less than the watchdog"),
+        ({"position_min_rad": -1.0}, "both or neither"),
+        ({"position_min_rad": 1.0, "position_max_rad": -1.0}, "less than position_max_rad"),
     ],
 )
 def test_settings_that_cannot_be_meant_are_refused(settings_of, changes, match):

@@ -4,10 +4,11 @@ from math import isnan, nan, pi
 
 import pytest
 
-from drivers.canopen import BusSettings, CanopenSettings
+from drivers.can_bus.settings import BusSettings
 from drivers.canopen.cia301.object_access import ObjectRefusedError
 from drivers.canopen.cia301.object_table import ObjectTable
 from drivers.canopen.cia402.drive_units import read_units
+from drivers.canopen.settings import CanopenSettings
 from drivers.errors import DriveConfigurationError
 
 TENTH_DEGREE, INCREMENTS, RPM, METRES_PER_S = 0xFF410000, 0x00B50000, 0x00B44700, 0x00010300
@@ -31,7 +32,7 @@ def units(counts_per_turn, objects, **settings):
     for index, value in objects.items():
         pairs = enumerate(value, 1) if isinstance(value, tuple) else [(0, value)]
         flat |= {(index, place): number for place, number in pairs}
-    told = CanopenSettings(BusSettings("virtual", "x"), node_id=5, **settings)
+    told = CanopenSettings(bus=BusSettings("virtual", "x"), node_id=5, **settings)
     return read_units(ObjectTable(Objects(flat), "x"), told, counts_per_turn)
 
 

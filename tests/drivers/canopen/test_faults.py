@@ -6,8 +6,10 @@ import time
 import can
 import pytest
 
-from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
-from drivers.canopen.cia402.bits import TorqueOffBit
+from drivers.can_bus.settings import BusSettings
+from drivers.canopen.cia402.bits import TorqueOffSettings
+from drivers.canopen.drive import CanopenDrive
+from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveFault, DriveStateError
 from tests.drivers.canopen.conftest import JOINT
@@ -251,7 +253,7 @@ def test_a_bus_that_goes_off_in_motion_ends_in_the_drives_own_stop(node, channel
         "drivers.canopen.cia301.bus.open_bus", lambda _settings, _device: can.Bus(interface="virtual", channel=channel)
     )
     drive = _moving(
-        CanopenDrive(CanopenSettings(BusSettings("socketcan", channel), node_id=5, host_node_id=127), JOINT)
+        CanopenDrive(CanopenSettings(bus=BusSettings("socketcan", channel), node_id=5, host_node_id=127), JOINT)
     )
     try:
         node.bus.send(can.Message(arbitration_id=0x40, is_error_frame=True, data=bytes(8)))
@@ -387,7 +389,7 @@ def test_a_host_that_is_held_up_again_and_again_is_no_silence_of_the_drive(node,
     assert drive.exchange(PUSH).status is Status.ENABLED
 
 
-STO = TorqueOffBit(0x60FD, 0, 3)
+STO = TorqueOffSettings(index=0x60FD, bit=3)
 
 
 def test_safe_torque_off_is_no_fault_and_is_seen_before_the_power_comes(node, drive_of):
@@ -409,7 +411,7 @@ def test_safe_torque_off_is_no_fault_and_is_seen_before_the_power_comes(node, dr
 
 def test_the_level_of_its_bit_may_be_the_other_one_in_an_object_of_a_byte(node, drive_of):
     node.objects[0x3240, 4] = ["<B", 3]
-    drive = drive_of(torque_off=TorqueOffBit(0x3240, 4, 0, level=0))
+    drive = drive_of(torque_off=TorqueOffSettings(index=0x3240, subindex=4, bit=0, level=0))
     drive.open(0.005)
     assert drive.inspect().torque_off == ""
     node.put(0x3240, 4, 2)

@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid
 
+from bench.config.drives.registry import drive_kind
 from bench.errors import ConfigurationError
 from bench.runs.follow import follower_of, record
 from drivers.can_bus.port import CanPort
-from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+from drivers.can_bus.settings import BusSettings
+from drivers.canopen.drive import CanopenDrive
+from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode
-from drivers.errors import DriveConfigurationError
 from sim_backend.devices.canopen.serve import CanOpenSettings, serve_canopen
 from tests.drivers.canopen.conversation import JOINT
 from tests.drivers.conformance.benches import configured
@@ -73,7 +75,7 @@ def test_what_another_master_drives_is_recorded_and_nothing_is_sent(tmp_path, mo
 
 
 def test_a_mapping_without_the_position_says_what_is_wanted(tmp_path):
-    with pytest.raises(DriveConfigurationError, match=r"no position actual value .*0x60640020 is wanted"):
+    with pytest.raises(ConfigurationError, match=r"no position actual value .*0x60640020 is wanted"):
         follower_of(section(tpdo_mapping={"0x185": [0x60410010]}), tmp_path / "unused", 0.01)
 
 
@@ -83,5 +85,14 @@ def test_a_cob_id_that_is_no_number_is_refused(tmp_path):
 
 
 def test_an_entry_within_a_byte_is_refused(tmp_path):
-    with pytest.raises(DriveConfigurationError, match="begins within a byte, at bit 1"):
+    with pytest.raises(ConfigurationError, match="begins within a byte, at bit 1"):
         follower_of(section(tpdo_mapping={"0x185": [0x60FD0001, 0x60640020]}), tmp_path / "unused", 0.01)
+
+
+def test_settings_that_contradict_each_other_are_refused_in_the_words_of_who_drives(tmp_path):
+    configuration = section(tpdo_mapping=MAPPING, position_min_rad=1.0)
+    with pytest.raises(ConfigurationError, match=r"setting position_min_rad = .*: less than") as driven:
+        drive_kind("canopen").make(configuration.drive, configuration.rig)
+    with pytest.raises(ConfigurationError) as followed:
+        follower_of(configuration, tmp_path / "unused", 0.01)
+    assert str(followed.value) == str(driven.value)

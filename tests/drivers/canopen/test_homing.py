@@ -86,6 +86,25 @@ def test_the_drive_is_told_how_and_its_home_is_to_be_0(homing_node, drive_of):
     assert not sample.homed
 
 
+@pytest.mark.parametrize(
+    ("unit", "factor", "counts"),
+    [
+        (0x00C00300, None, 382),  # rpm a second: 2 rad/s2 of the joint are 40 of the motor
+        (0xFDB45700, None, 6366),  # thousandths of a turn
+        (None, (10, 1), 260_759),  # of a position unit a tenth
+        (None, None, 382),  # not told: as of velocities, a second
+    ],
+)
+def test_the_acceleration_is_in_the_drives_unit_of_accelerations(homing_node, drive_of, unit, factor, counts):
+    homing_node.put(0x60AA, 0, unit or 0)
+    for place, value in enumerate(factor or (), 1):
+        homing_node.objects[0x6097, place] = ["<I", value]
+    drive = drive_of(homing=HOW)
+    drive.open(0.005)
+    drive.enable(Mode.HOME)
+    assert (homing_node.get(0x609A), homing_node.get(0x6099, 1)) == (counts, 95)
+
+
 def test_a_homing_error_is_raised_with_the_statusword(homing_node, drive_of):
     drive = drive_of(homing=HOW)
     drive.open(0.005)

@@ -5,9 +5,11 @@ import time
 import can
 import pytest
 
-from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+from drivers.can_bus.settings import BusSettings
 from drivers.canopen.cia301.bus import BusPort
 from drivers.canopen.cia301.link import CanLink
+from drivers.canopen.drive import CanopenDrive
+from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError
 from sim_backend.devices.canopen.serve import CanOpenSettings, serve_canopen
@@ -28,7 +30,7 @@ GROUP = "239.74.163.41"
     ],
 )
 def test_an_interface_gets_what_it_takes(bus, arguments):
-    CanopenSettings(bus, node_id=5)
+    CanopenSettings(bus=bus, node_id=5)
     assert bus.arguments() == {"interface": bus.interface, "ignore_config": True} | arguments
 
 
@@ -36,11 +38,11 @@ def test_an_interface_that_python_can_does_not_know_is_refused_with_those_that_i
     with pytest.raises(
         DriveConfigurationError, match=r"interface = 'pcann': one of .*kvaser.*pcan.*vector.* is wanted"
     ):
-        CanopenSettings(BusSettings("pcann", "PCAN_USBBUS1"), node_id=5)
+        CanopenSettings(bus=BusSettings("pcann", "PCAN_USBBUS1"), node_id=5)
 
 
 def test_an_adapter_whose_driver_is_missing_is_said_so():
-    drive = CanopenDrive(CanopenSettings(BusSettings("kvaser", "0"), node_id=5), JOINT)
+    drive = CanopenDrive(CanopenSettings(bus=BusSettings("kvaser", "0"), node_id=5), JOINT)
     with pytest.raises(DriveConnectionError, match=r"the bus kvaser 0 does not open.*its driver installed"):
         drive.open(0.005)
 
@@ -58,7 +60,7 @@ def _multicast_works() -> bool:
 def test_a_bus_that_hands_back_its_own_frames_has_no_stranger_on_it():
     with serve_canopen(CanOpenSettings(interface="udp_multicast", channel=GROUP)):
         bus = BusSettings("udp_multicast", GROUP, options={"hop_limit": 0})
-        drive = CanopenDrive(CanopenSettings(bus, node_id=5, watchdog_s=0.6, answer_s=0.4), JOINT)
+        drive = CanopenDrive(CanopenSettings(bus=bus, node_id=5, watchdog_s=0.6, answer_s=0.4), JOINT)
         try:
             drive.open(0.005)
             drive.enable(Mode.CURRENT)

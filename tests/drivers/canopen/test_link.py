@@ -8,12 +8,17 @@ import can
 import pytest
 
 from drivers.can_bus.bounded import bounded
+from drivers.can_bus.port import CanPort
 from drivers.can_bus.settings import BusSettings
 from drivers.canopen.cia301.bus import BusPort
 from drivers.canopen.cia301.link import CanLink
 from drivers.errors import DriveConnectionError
 
-FULL = can.CanOperationError("Failed to transmit: No buffer space available", errno.ENOBUFS)
+# as SocketCAN says it, and as python-can does after a wait
+FULL = (
+    can.CanOperationError("Failed to transmit: No buffer space available", errno.ENOBUFS),
+    can.CanOperationError("Transmit buffer full"),
+)
 
 
 class ScriptedBus:
@@ -35,6 +40,13 @@ class ScriptedBus:
         return outcome
 
 
+def _port(**script):
+    port = CanPort(BusSettings("virtual", "x"))
+    port.close()
+    port._bus = ScriptedBus(**script)
+    return port
+
+
 def _link(interface="virtual", **script):
     port = BusPort(BusSettings(interface, "x"))
     port._bus = ScriptedBus(**script)
@@ -47,25 +59,30 @@ def _frame(cob, data=b""):
     return can.Message(arbitration_id=cob, data=data, is_extended_id=False)
 
 
-def test_a_full_transmit_buffer_is_waited_for():
-    link = _link(sends=[FULL, can.CanOperationError("Transmit buffer full"), None])
+@pytest.mark.parametrize("full", FULL)
+def test_a_full_transmit_buffer_is_waited_for(full):
+    link, port = _link(sends=[full] * 2), _port(sends=[full] * 2)
     link.send_message(0x205, b"\x0f\0\0\0")
-    assert [(message.arbitration_id, bytes(message.data)) for message in link.bus.sent] == [(0x205, b"\x0f\0\0\0")]
-    assert link.waited == 2
+    port.send(0x205, b"\x0f\0\0\0")
+    for bus in (link.bus, port._bus):
+        assert [(message.arbitration_id, bytes(message.data)) for message in bus.sent] == [(0x205, b"\x0f\0\0\0")]
 
 
-def test_a_transmit_buffer_that_stays_full_is_an_error_in_bounded_time():
-    link = _link(sends=[FULL] * 10_000)
-    start_s = time.perf_counter()
-    with pytest.raises(DriveConnectionError, match="stays full: nobody acknowledges; check cable"):
-        link.send_message(0x80, b"")
-    assert time.perf_counter() - start_s < 2.0
+@pytest.mark.parametrize("full", FULL)
+def test_a_transmit_buffer_that_stays_full_is_an_error_in_bounded_time(full):
+    link, port = _link(sends=[full] * 10_000), _port(sends=[full] * 10_000)
+    for one, why in ((link, "the transmit buffer stays full: nobody acknowledges"), (port, "or nobody acknowledges")):
+        start_s = time.perf_counter()
+        with pytest.raises(DriveConnectionError, match=f"sending failed: .*{why}.*; check cable"):
+            one.send_prepared(_frame(0x80))
+        assert time.perf_counter() - start_s < 2.0
 
 
 @pytest.mark.parametrize("error", [can.CanOperationError("Could not write"), BrokenPipeError("gone"), OSError("gone")])
 def test_a_port_that_is_gone_is_an_error_at_once(error):
-    with pytest.raises(DriveConnectionError, match=r"sending failed: .*open the drive again"):
-        _link(sends=[error]).send_message(0x80, b"")
+    for one in (_link(sends=[error, None]), _port(sends=[error, None])):
+        with pytest.raises(DriveConnectionError, match=r"sending failed: .*open the drive again"):
+            one.send_prepared(_frame(0x80))
     with pytest.raises(DriveConnectionError, match=r"receiving failed: .*open the drive again"):
         _link(receives=[error]).receive(0.01)
 

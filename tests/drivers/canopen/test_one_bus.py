@@ -6,7 +6,10 @@ from contextlib import ExitStack
 import can
 import pytest
 
-from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings, share_buses
+from drivers.can_bus.settings import BusSettings
+from drivers.canopen.drive import CanopenDrive
+from drivers.canopen.one_bus import share_buses
+from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError
 from drivers.joint import JointScale
@@ -20,7 +23,9 @@ OFF, PUSH, REST = Command(Mode.OFF), Command(Mode.CURRENT, 0.3), Command(Mode.CU
 
 def joint_at(node: int, channel: str, **settings) -> CanopenDrive:
     usual = {"watchdog_s": WATCHDOG_S, "answer_s": 0.3, "listen_s": 0.05} | settings
-    return CanopenDrive(CanopenSettings(BusSettings("virtual", channel), node_id=node, **usual), JointScale(4096, 20.0))
+    return CanopenDrive(
+        CanopenSettings(bus=BusSettings("virtual", channel), node_id=node, **usual), JointScale(4096, 20.0)
+    )
 
 
 @pytest.fixture
@@ -131,7 +136,9 @@ def test_one_drive_for_two_joints_is_refused() -> None:
 
 
 def test_two_bit_rates_on_one_bus_are_refused() -> None:
-    slow = CanopenDrive(CanopenSettings(BusSettings("virtual", "x", bitrate=500_000), node_id=6), JointScale(4096, 20))
+    slow = CanopenDrive(
+        CanopenSettings(bus=BusSettings("virtual", "x", bitrate=500_000), node_id=6), JointScale(4096, 20)
+    )
     with pytest.raises(DriveConfigurationError, match="their settings of it differ"):
         share_buses([joint_at(5, "x"), slow])
 

@@ -8,9 +8,9 @@ from drivers.canopen.cia301.period import cycle_s
 from drivers.canopen.cia402.profiles import CIA402, EPOS4
 from drivers.canopen.cia402.scale import DriveScale
 from drivers.canopen.cia402.units import (
+    VELOCITY_CODES,
     VELOCITY_UNITS,
     interpolation_periods,
-    velocity_unit_code,
     velocity_unit_name,
     velocity_unit_rad_s,
 )
@@ -39,8 +39,8 @@ def test_velocity_units(code, rad_s):
 
 def test_every_name_of_a_unit_has_a_code_and_back():
     for name in VELOCITY_UNITS:
-        assert velocity_unit_name(velocity_unit_code(name)) == name
-        assert velocity_unit_rad_s(velocity_unit_code(name), 4096) is not None
+        assert velocity_unit_name(VELOCITY_CODES[name]) == name
+        assert velocity_unit_rad_s(VELOCITY_CODES[name], 4096) is not None
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,9 @@ import time
 
 import pytest
 
-from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+from drivers.can_bus.settings import BusSettings
+from drivers.canopen.drive import CanopenDrive
+from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode, Status, Watchdog
 from drivers.joint import JointScale
 from tests.drivers.canopen.durand_drive import DurandDrive
@@ -22,7 +24,7 @@ def device(request):
 @pytest.fixture
 def drive(device, request):
     settings = CanopenSettings(
-        BusSettings("virtual", request.node.name), node_id=5, watchdog_s=WATCHDOG_S, answer_s=0.3, listen_s=0.05,
+        bus=BusSettings("virtual", request.node.name), node_id=5, watchdog_s=WATCHDOG_S, answer_s=0.3, listen_s=0.05,
         velocity_unit="counts/s",
     )  # fmt: skip
     made = CanopenDrive(settings, JointScale(4096, 20.0))

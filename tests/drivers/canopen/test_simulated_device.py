@@ -9,8 +9,9 @@ from contextlib import suppress
 
 import pytest
 
-from drivers.canopen import CanopenDrive, CanopenSettings
-from drivers.canopen.cia402.bits import BrakeBit, TorqueOffBit
+from drivers.canopen.cia402.bits import BrakeBit, TorqueOffSettings
+from drivers.canopen.drive import CanopenDrive
+from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveError, DriveFault, DriveStateError
 from tests.devices.device_process import Thread
@@ -224,7 +225,7 @@ def test_torque_that_is_taken_away_is_noticed(slcan):
 
 
 def test_the_interlock_bit_tells_safe_torque_off_until_its_circuit_is_closed(slcan_device):
-    with driver_of(slcan_device, torque_off=TorqueOffBit(0x60FD, 0, 3)) as drive:
+    with driver_of(slcan_device, torque_off=TorqueOffSettings(index=0x60FD, bit=3)) as drive:
         drive.open(0.005)
         assert drive.inspect().torque_off == ""
         slcan_device.side.ask("fault", name="torque-disabled")

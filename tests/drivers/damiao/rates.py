@@ -58,7 +58,12 @@ def library(settings: BusSettings) -> Iterator[Cycle]:
 @contextmanager
 def driver(settings: BusSettings) -> Iterator[Cycle]:
     """One exchange of the driver."""
-    drive = DamiaoDrive(DamiaoSettings(settings, watchdog_s=2.0, answer_timeout_s=2.0), JOINT)
+    drive = DamiaoDrive(
+        DamiaoSettings.model_construct(
+            interface=settings.interface, channel=settings.channel, watchdog_s=2.0, answer_timeout_s=2.0
+        ),
+        JOINT,
+    )
     drive.open(0.01)
     drive.enable(Mode.TORQUE)
     yield lambda: drive.exchange(Command(Mode.TORQUE, 0.0))

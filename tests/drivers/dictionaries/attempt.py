@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from drivers.canopen import BusSettings, CanopenDrive, CanopenSettings
+from drivers.can_bus.settings import BusSettings
+from drivers.canopen.drive import CanopenDrive
+from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode, Sample, Status, Watchdog
 from drivers.errors import DriveError, WatchdogError
 from drivers.joint import JointScale
@@ -70,7 +72,7 @@ def host(
     """A driver for it, not yet open."""
     usual: dict[str, Any] = {"watchdog_s": WATCHDOG_S, "answer_s": ANSWER_S, "listen_s": 0.05}
     bus = BusSettings("virtual", running.path)
-    drive = CanopenDrive(CanopenSettings(bus, node_id=node, **usual | settings), JointScale(counts_per_turn, 20.0))
+    drive = CanopenDrive(CanopenSettings(bus=bus, node_id=node, **usual | settings), JointScale(counts_per_turn, 20.0))
     try:
         yield drive
     finally:

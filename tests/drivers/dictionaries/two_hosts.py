@@ -6,7 +6,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from drivers.canopen import CanopenDrive
+from drivers.canopen.drive import CanopenDrive
 from drivers.contract import Command, Mode
 from drivers.errors import DriveError
 from sim_backend.devices.canopen.drive import ServoDrive

@@ -87,7 +87,12 @@ def _library(path: str, joints: int) -> Iterator[Cycle]:
 @contextmanager
 def _driver(path: str, joints: int) -> Iterator[Cycle]:
     drives = [
-        DynamixelDrive(DynamixelSettings(path, BAUD_RATE, servo, watchdog_s=2.0, answer_timeout_s=2.0), JOINT)
+        DynamixelDrive(
+            DynamixelSettings.model_construct(
+                port=path, baud_rate=BAUD_RATE, servo_id=servo, watchdog_s=2.0, answer_timeout_s=2.0
+            ),
+            JOINT,
+        )
         for servo in range(1, joints + 1)
     ]
     for drive in drives:

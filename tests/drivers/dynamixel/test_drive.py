@@ -20,7 +20,7 @@ PERIOD_S = 0.01
 
 def drive_of(device, servo_id=1, joint=JOINT, **settings):
     values = {"answer_timeout_s": 0.2, "watchdog_s": 1.0} | settings
-    return DynamixelDrive(DynamixelSettings(device.port, servo_id=servo_id, **values), joint)
+    return DynamixelDrive(DynamixelSettings(port=device.port, servo_id=servo_id, **values), joint)
 
 
 @pytest.fixture(scope="module")

@@ -59,7 +59,10 @@ def library(path: str, joints: int) -> Iterator[Cycle]:
 def driver(path: str, joints: int) -> Iterator[Cycle]:
     """One exchange of the driver."""
     drives = [
-        FeetechDrive(FeetechSettings(path, servo_id=servo, accept_no_watchdog=True, answer_timeout_s=2.0), JOINT)
+        FeetechDrive(
+            FeetechSettings.model_construct(port=path, servo_id=servo, accept_no_watchdog=True, answer_timeout_s=2.0),
+            JOINT,
+        )
         for servo in range(1, joints + 1)
     ]
     for drive in drives:

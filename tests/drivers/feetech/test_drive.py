@@ -22,7 +22,7 @@ HIGHEST = 11  # in its memory
 
 def drive_of(device, servo_id=1, **settings):
     values = {"answer_timeout_s": 0.2, "accept_no_watchdog": True} | settings
-    return FeetechDrive(FeetechSettings(device.port, servo_id=servo_id, **values), JOINT)
+    return FeetechDrive(FeetechSettings(port=device.port, servo_id=servo_id, **values), JOINT)
 
 
 @pytest.fixture(scope="module")

@@ -55,7 +55,7 @@ def library(path: str) -> Iterator[Cycle]:
 @contextmanager
 def driver(path: str) -> Iterator[Cycle]:
     """One exchange of the driver."""
-    drive = MoteusDrive(MoteusSettings(path, watchdog_s=2.0, answer_timeout_s=2.0), JOINT)
+    drive = MoteusDrive(MoteusSettings.model_construct(port=path, watchdog_s=2.0, answer_timeout_s=2.0), JOINT)
     drive.open(0.01)
     drive.enable(Mode.TORQUE)
     yield lambda: drive.exchange(Command(Mode.TORQUE, 0.0))

@@ -7,7 +7,6 @@ import pytest
 
 from bench.config.configuration import parse_configuration
 from bench.errors import ConfigurationError
-from drivers.can_bus.settings import BusSettings
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConnectionError
 from drivers.joint import JointScale
@@ -23,7 +22,7 @@ PERIOD_S = 0.01
 
 def drive_on(channel, servo_id=1, **settings):
     values = {"answer_timeout_s": 0.3, "watchdog_s": 1.0} | settings
-    return MoteusDrive(MoteusSettings(bus=BusSettings("virtual", channel), servo_id=servo_id, **values), JOINT)
+    return MoteusDrive(MoteusSettings(interface="virtual", channel=channel, servo_id=servo_id, **values), JOINT)
 
 
 def test_two_on_one_bus_are_turned_in_one_exchange():

@@ -55,7 +55,14 @@ def barely(settings: BusSettings) -> Iterator[Cycle]:
 def driver(settings: BusSettings) -> Iterator[Cycle]:
     """One exchange of the driver."""
     drive = OdriveDrive(
-        OdriveSettings(settings, watchdog_s=2.0, watchdog_is_set_in_drive=True, answer_timeout_s=2.0, slow_every=NEVER),
+        OdriveSettings.model_construct(
+            interface=settings.interface,
+            channel=settings.channel,
+            watchdog_s=2.0,
+            watchdog_is_set_in_drive=True,
+            answer_timeout_s=2.0,
+            slow_every=NEVER,
+        ),
         JOINT,
     )
     drive.open(0.01)

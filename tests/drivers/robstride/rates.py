@@ -53,7 +53,12 @@ def library(settings: BusSettings) -> Iterator[Cycle]:
 def driver(settings: BusSettings) -> Iterator[Cycle]:
     """One exchange of the driver."""
     values = {"position_range_rad": 100.0, "speed_range_rad_s": 200.0, "torque_range_n_m": 0.5}
-    drive = RobstrideDrive(RobstrideSettings(settings, watchdog_s=2.0, answer_timeout_s=2.0, **values), JOINT)
+    drive = RobstrideDrive(
+        RobstrideSettings.model_construct(
+            interface=settings.interface, channel=settings.channel, watchdog_s=2.0, answer_timeout_s=2.0, **values
+        ),
+        JOINT,
+    )
     drive.open(0.01)
     drive.enable(Mode.TORQUE)
     yield lambda: drive.exchange(Command(Mode.TORQUE, 0.0))

@@ -1,10 +1,10 @@
 """Cyclic synchronous torque (10): the host says the torque of every cycle."""
 
 from sim_backend.devices.canopen.dictionary import Dictionary
-from sim_backend.devices.canopen.modes.mode import FOLLOWS, Seen
+from sim_backend.devices.canopen.modes.mode import FOLLOWS, Mode, Seen
 
 
-class CyclicTorque:
+class CyclicTorque(Mode):
     """Target torque (0x6071) plus torque offset (0x60B2)."""
 
     def __init__(self, dictionary: Dictionary) -> None:
@@ -16,10 +16,6 @@ class CyclicTorque:
     def torque(self, seen: Seen) -> float:  # noqa: ARG002
         """Return the torque [permille]."""
         return self._dictionary.number(0x6071) + self._dictionary.number(0x60B2)
-
-    def position(self) -> float | None:
-        """No position is demanded."""
-        return None
 
     def status(self) -> int:
         """The drive follows."""

@@ -5,7 +5,7 @@ from math import ceil, floor
 
 from sim_backend.devices.axis import TICK_S, Axis
 from sim_backend.devices.canopen.dictionary import Dictionary
-from sim_backend.devices.canopen.modes.mode import HALT, HOMED, HOMING_FAILED, TARGET_REACHED, Seen, Units
+from sim_backend.devices.canopen.modes.mode import HALT, HOMED, HOMING_FAILED, TARGET_REACHED, Mode, Seen, Units
 from sim_backend.devices.canopen.modes.position_loop import PositionLoop
 
 START = 1 << 4  # of the controlword
@@ -21,7 +21,7 @@ FARTHEST_TURNS = 1.5  # of the motor: there is an index pulse in every turn
 LEAD_S = 0.5  # of the speed, by which a search against a stop demands more than it gets
 
 
-class Homing:
+class Homing(Mode):
     """Method (0x6098), speeds (0x6099), acceleration (0x609A), home offset (0x607C).
 
     Bit 4 of the controlword starts, and breaks off where it falls. In the statusword bit 12 is "homing attained", 13
@@ -70,7 +70,7 @@ class Homing:
         if self._searches:
             seen = self._look(seen)
         wanted = self._wanted() if self._searches else 0.0
-        step = self._units.counts_per_s(self._dictionary.number(0x609A)) * TICK_S
+        step = self._units.counts_per_s2(self._dictionary.number(0x609A)) * TICK_S
         self._speed += max(-step, min(step, wanted - self._speed))
         self._position += self._speed * TICK_S
         if self._searches and self._method in END_STOP:
@@ -78,10 +78,6 @@ class Homing:
             self._position = max(seen.counts - lead, min(seen.counts + lead, self._position))
         most, asked = self._most(), self._loop.torque(self._position, self._speed, seen)
         return max(-most, min(most, asked))
-
-    def position(self) -> float | None:
-        """No position is demanded: nothing is astray."""
-        return None
 
     def status(self) -> int:
         """Whether home was found, whether that failed, whether the motor stands."""

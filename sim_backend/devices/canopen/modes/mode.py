@@ -17,10 +17,11 @@ class Seen(NamedTuple):
 
 
 class Units(NamedTuple):
-    """From the drive's units of position and velocity to counts, and counts a second."""
+    """From the drive's units of position, velocity and acceleration to counts, counts/s and counts/s2."""
 
     counts: Callable[[float], float]
     counts_per_s: Callable[[float], float]
+    counts_per_s2: Callable[[float], float]
 
 
 class Mode(Protocol):
@@ -34,6 +35,7 @@ class Mode(Protocol):
 
     def position(self) -> float | None:
         """Return the position that is demanded [counts]; None where none is."""
+        return None
 
     def status(self) -> int:
         """Return the mode's bits of the statusword."""

@@ -48,8 +48,9 @@ class ProfilePosition:
 
     def torque(self, seen: Seen) -> float:
         """Return the torque [permille]."""
-        top, acceleration, deceleration = (
-            self._units.counts_per_s(self._dictionary.number(index)) for index in (0x6081, 0x6083, 0x6084)
+        top = self._units.counts_per_s(self._dictionary.number(0x6081))
+        acceleration, deceleration = (
+            self._units.counts_per_s2(self._dictionary.number(index)) for index in (0x6083, 0x6084)
         )
         if self._dictionary.number(0x6040) & HALT:
             self._profile.halt(deceleration)

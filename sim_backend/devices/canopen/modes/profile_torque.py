@@ -2,10 +2,10 @@
 
 from sim_backend.devices.axis import TICK_S
 from sim_backend.devices.canopen.dictionary import Dictionary
-from sim_backend.devices.canopen.modes.mode import HALT, TARGET_REACHED, Seen
+from sim_backend.devices.canopen.modes.mode import HALT, TARGET_REACHED, Mode, Seen
 
 
-class ProfileTorque:
+class ProfileTorque(Mode):
     """Target torque (0x6071) at the torque slope (0x6087, permille/s); halt takes it to zero."""
 
     def __init__(self, dictionary: Dictionary) -> None:
@@ -25,10 +25,6 @@ class ProfileTorque:
         self._now += max(-step, min(step, target - self._now))
         self._reached = self._now == target
         return self._now
-
-    def position(self) -> float | None:
-        """No position is demanded."""
-        return None
 
     def status(self) -> int:
         """Whether the target is reached."""

@@ -2,11 +2,11 @@
 
 from sim_backend.devices.axis import TICK_S
 from sim_backend.devices.canopen.dictionary import Dictionary
-from sim_backend.devices.canopen.modes.mode import FOLLOWS, HALT, TARGET_REACHED, Seen, Units
+from sim_backend.devices.canopen.modes.mode import FOLLOWS, HALT, TARGET_REACHED, Mode, Seen, Units
 from sim_backend.devices.canopen.modes.position_loop import PositionLoop
 
 
-class Velocity:
+class Velocity(Mode):
     """Target velocity (0x60FF), approached by 0x6083 and 0x6084 where it is profiled; torque offset on top.
 
     Args:
@@ -34,10 +34,6 @@ class Velocity:
         self._position += self._speed * TICK_S
         return self._loop.torque(self._position, self._speed, seen) + self._dictionary.number(0x60B2)
 
-    def position(self) -> float | None:
-        """No position is demanded."""
-        return None
-
     def status(self) -> int:
         """Whether the drive follows, or has reached the speed."""
         if not self._profiled:
@@ -52,6 +48,6 @@ class Velocity:
 
     def _approach(self, wanted: float) -> None:
         slower = abs(wanted) < abs(self._speed)
-        step = self._units.counts_per_s(self._dictionary.number(0x6084 if slower else 0x6083)) * TICK_S
+        step = self._units.counts_per_s2(self._dictionary.number(0x6084 if slower else 0x6083)) * TICK_S
         change = wanted - self._speed
         self._speed += max(-step, min(step, change)) if self._profiled else change

@@ -14,7 +14,7 @@ def drive_profile(modes: int, velocity_unit: int, acceleration_unit: int, quick_
     Args:
         modes: 0x6502.
         velocity_unit: 0x60A9.
-        acceleration_unit: 0x60AA, which is that of velocity a second.
+        acceleration_unit: 0x60AA.
         quick_stop: default of 0x605A.
     """
     return [

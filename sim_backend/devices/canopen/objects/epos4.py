@@ -64,6 +64,7 @@ EPOS4 = Family(
     modes=_MODES,
     objects=_objects,
     velocity_rad_s=rpm,
+    acceleration_rad_s2=rpm,
     torque_unit_n_m=1e-6,
     own_objects=frozenset(
         {(0x2200, 1), (0x30D0, 0), (0x30D1, 1), (0x30D1, 2), (0x30D2, 1), (0x30D3, 1), (0x3201, 1), (0x3203, 1)}

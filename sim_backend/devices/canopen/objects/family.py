@@ -41,7 +41,7 @@ class Rating:
 
 
 def increment(counts_per_turn: float) -> float:
-    """Return the motor angle of one increment of the encoder [rad]."""
+    """Return the motor angle of one increment of the encoder [rad], the speed of one a second [rad/s], and so on."""
     return 2.0 * pi / counts_per_turn
 
 
@@ -56,6 +56,7 @@ class Family:
         objects: its dictionary, for a rating.
         velocity_rad_s: motor speed of one unit of velocity [rad/s], for the encoder's counts per turn.
         position_rad: motor angle of one unit of position [rad], for the encoder's counts per turn.
+        acceleration_rad_s2: motor acceleration of one unit of acceleration [rad/s2], for the encoder's counts per turn.
         torque_unit_n_m: torque of one unit of 0x6076 [N m].
         peak: where the largest current is, and what its unit is in A, for a rating.
         own_objects: objects beyond CiA 402 that tell something, of those that `Measured` knows.
@@ -67,6 +68,7 @@ class Family:
     modes: frozenset[int]
     objects: Callable[[Rating], list[Object]]
     velocity_rad_s: Callable[[float], float]
+    acceleration_rad_s2: Callable[[float], float]
     torque_unit_n_m: float
     peak: tuple[tuple[Place, Callable[[Rating], float]], ...]
     position_rad: Callable[[float], float] = increment
@@ -88,10 +90,5 @@ def with_defaults(objects: list[Object], defaults: dict[int, int]) -> list[Objec
 
 
 def rpm(_counts_per_turn: float) -> float:
-    """Return the motor speed of 1 rpm [rad/s]."""
+    """Return the motor speed of 1 rpm [rad/s], or the acceleration of 1 rpm a second [rad/s2]."""
     return 2.0 * pi / 60.0
-
-
-def increments_per_s(counts_per_turn: float) -> float:
-    """Return the motor speed of one increment a second [rad/s]."""
-    return 2.0 * pi / counts_per_turn

@@ -17,8 +17,12 @@ _LINK_TO_MAPPING = 0x1400 ^ 0x1600  # from the communication parameter of a PDO 
 # what whoever commissions a drive enters for the motor on it; a data sheet cannot know it
 _OF_THE_MOTOR = frozenset({(0x6075, 0), (0x6076, 0), (0x608F, 1), (0x608F, 2), (0x3001, 1), (0x3001, 2), (0x3001, 5)})
 _REVOLUTION, _RADIAN, _DEGREE = 0xB4, 0x10, 0x41  # of CiA 303-2
+_INCREMENT_PER_S2, _RPM_PER_S = (0xB5, 0x57), (0xC0, 0x03)  # numerator and denominator; the second is maxon's
 _ANGLES_RAD = {_REVOLUTION: 2.0 * pi, _RADIAN: 1.0, _DEGREE: pi / 180.0}
 _TIMES_S = {0x03: 1.0, 0x47: 60.0}
+_ACCELERATIONS_RAD_S2 = {(numerator, 0x57): angle_rad for numerator, angle_rad in _ANGLES_RAD.items()} | {
+    _RPM_PER_S: 2.0 * pi / 60.0
+}
 
 
 def family_of(sheet: DataSheet) -> Family:
@@ -32,6 +36,7 @@ def family_of(sheet: DataSheet) -> Family:
         modes=_modes(sheet) or base.modes,
         objects=lambda rating: _objects(sheet, base, rating),
         velocity_rad_s=_velocity_unit(sheet),
+        acceleration_rad_s2=_acceleration_unit(sheet),
         torque_unit_n_m=base.torque_unit_n_m,
         peak=base.peak,
         position_rad=_position_unit(sheet),
@@ -124,6 +129,18 @@ def _velocity_unit(sheet: DataSheet) -> Callable[[float], float]:
         return lambda _turn: angle_rad * 10.0 ** _exponent(code) / time_s * gear
     factor = _ratio(sheet, 0x6096) or 1.0
     return lambda turn: position(turn) / factor
+
+
+def _acceleration_unit(sheet: DataSheet) -> Callable[[float], float]:
+    """Motor acceleration of one unit of acceleration [rad/s2]: by 0x60AA, by 0x6097, or a unit of velocity a second."""
+    position = _position_unit(sheet)
+    gear = _ratio(sheet, 0x6091) or 1.0
+    code = sheet.default(0x60AA) or 0
+    unit = (code >> 16 & 0xFF, code >> 8 & 0xFF)
+    if unit in _ACCELERATIONS_RAD_S2:
+        return lambda _turn: _ACCELERATIONS_RAD_S2[unit] * 10.0 ** _exponent(code) * gear
+    factor = 10.0 ** -_exponent(code) if unit == _INCREMENT_PER_S2 else _ratio(sheet, 0x6097)
+    return _velocity_unit(sheet) if factor is None else lambda turn: position(turn) / factor
 
 
 def _exponent(code: int) -> int:

@@ -4,7 +4,7 @@ from sim_backend.devices.canopen.data_types import I8, I16, U8, U16, U32
 from sim_backend.devices.canopen.objects.communication import communication
 from sim_backend.devices.canopen.objects.drive_profile import drive_profile
 from sim_backend.devices.canopen.objects.entry import Access, Entry, Object, record, variable
-from sim_backend.devices.canopen.objects.family import Family, Rating, increments_per_s, mode_bits, with_defaults
+from sim_backend.devices.canopen.objects.family import Family, Rating, increment, mode_bits, with_defaults
 
 RO, RW = Access.RO, Access.RW
 VELOCITY_UNIT_INCREMENTS_PER_S, ACCELERATION_UNIT_INCREMENTS_PER_S2 = 0x00B50300, 0x00B55700
@@ -64,7 +64,8 @@ GENERIC = Family(
     device_name=_NAME,
     modes=_MODES,
     objects=_objects,
-    velocity_rad_s=increments_per_s,
+    velocity_rad_s=increment,
+    acceleration_rad_s2=increment,
     torque_unit_n_m=1e-3,
     own_objects=frozenset({(0x2001, 0), (0x2002, 0)}),
     peak=(
