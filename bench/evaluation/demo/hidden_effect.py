@@ -66,7 +66,7 @@ def hidden_effect(configuration: BenchConfiguration, store: Store, seed: int) ->
         sentences=[
             f"{len(made.trials)} recordings of a plant with one more mechanism than the model. The trials with "
             f"50 g are held out. The model's error on them is {before.error.held_out.relative:.2%} of the "
-            f"effort; repeated trials differ by {rungs.floor:.2%}, which no motion explains.",
+            f"effort; repeated trials differ by {rungs.floor:.2%}, as far as the best model can tell.",
             found.sentence,
             change.sentence,
             f"Named: {first.title.lower()}. {right}",
