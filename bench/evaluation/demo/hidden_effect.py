@@ -14,7 +14,7 @@ from bench.study.compare import compare
 from bench.study.create import create_study
 from bench.study.diagnosis.diagnose import diagnose
 from bench.study.ladder import ladder
-from bench.study.models.diagnosis import Diagnosis, Ranked
+from bench.study.models.diagnosis import ORDER, Diagnosis, Ranked
 from bench.study.models.ladder import Ladder, Rung
 
 BASE = (
@@ -89,7 +89,7 @@ def _ranking(diagnosis: Diagnosis) -> Table:
         for one in diagnosis.ranking
     ]
     columns = ["effect", "score#", "held out before [%]#", "then [%]#", "gain, 90 % interval", "rivals"]
-    return Table("Effects by evidence", columns, rows)
+    return Table(f"Effects by evidence: {ORDER}", columns, rows)
 
 
 def _ladder(ladder: Ladder) -> Table:
