@@ -22,7 +22,7 @@ from bench.store import Store
 from tests.cli.test_serve import PATIENCE_S, free_port, start, wait_until_answering
 from tests.service.test_tls import OPENSSL, make
 
-pytestmark = [pytest.mark.wall_clock, pytest.mark.skipif(os.name != "posix", reason="locks of POSIX")]
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="locks of POSIX")
 STOP_S = 0.2  # to the brake, and then to the end of the record
 HOST_S = 0.3  # that a busy machine keeps a process waiting
 NOBODY_URL = "http://127.0.0.1:9"  # somebody may serve at the usual address
@@ -126,6 +126,9 @@ def test_every_service_is_asked_by_address_and_bench(tmp_path, command):
         assert "the joint is off" not in shown, "of what a service has not asked it says nothing"
         again = command("--store", "other.sqlite", "stop", "--url", idle)
         assert f"{idle}: Nothing was running on this service." in " ".join(again.stdout.split())
+        deadline_s = time.monotonic() + PATIENCE_S
+        while ends(second)[0][0] == "running" and time.monotonic() < deadline_s:
+            time.sleep(0.02)
     assert ends(second)[0][0] == "stopped"
 
 
