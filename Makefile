@@ -22,7 +22,7 @@ $(STAMP): pyproject.toml constraints.txt
 
 # To try it
 
-demo: $(STAMP)   ## the main job, end to end, in a minute: tables here, a report in out/demo.html
+demo: $(STAMP)   ## the main job, end to end, in seconds once it is installed: tables here, a report in out/demo.html
 	$(BIN)/friction-bench demo --report out/demo.html
 
 paper: $(STAMP)  ## every figure and table of the paper, ours beside it, in minutes: a report in out/paper.html
@@ -127,5 +127,5 @@ hashes: $(STAMP) ## after a change of constraints.txt: hashes.txt, the hashes of
 dist-test: dist  ## demo and service from the wheel alone, in a new environment outside the checkout
 	$(BIN)/python -m tests.release.from_wheel dist
 
-clean:           ## remove the environment and everything made
+clean:           ## remove the environment and everything made: .venv, dist, and all of out, with out/demo.sqlite
 	rm -rf $(VENV) out dist docs/reference/generated .mypy_cache .ruff_cache .pytest_cache .hypothesis

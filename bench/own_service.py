@@ -34,14 +34,20 @@ def local_port(url: str) -> int | None:
     return port if is_loopback(parts.hostname or "") else None
 
 
-def own_file(port: int) -> Path | None:
-    """In the user's own folder: the file of the service on `port`; None where the user has no home."""
+def own_folder() -> Path | None:
+    """The user's own folder, where running processes leave word of themselves; None where the user has no home."""
     state = os.environ.get("XDG_STATE_HOME", "")
     try:
         folder = Path(state) if Path(state).is_absolute() else Path.home() / ".local" / "state"
     except RuntimeError:
         return None
-    return folder / "friction-bench" / f"port-{port}.token"
+    return folder / "friction-bench"
+
+
+def own_file(port: int) -> Path | None:
+    """In the user's own folder: the file of the service on `port`; None where the user has no home."""
+    folder = own_folder()
+    return None if folder is None else folder / f"port-{port}.token"
 
 
 def read_token(path: Path) -> str | None:

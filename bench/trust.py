@@ -16,3 +16,16 @@ def trusted(url: str, ca_file: str | None = None) -> ssl.SSLContext | bool:
     if ca_file is not None:
         return ssl.create_default_context(cafile=ca_file)
     return ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT) if url.lower().startswith("http:") else True
+
+
+def trusted_alone(certificate: str) -> ssl.SSLContext:
+    """Trust a service that shows this very certificate, by whatever name it is reached.
+
+    Args:
+        certificate: in PEM, as the service itself has told it.
+    """
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    context.check_hostname = False
+    context.verify_flags |= ssl.VERIFY_X509_PARTIAL_CHAIN
+    context.load_verify_locations(cadata=certificate)
+    return context

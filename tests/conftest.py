@@ -41,6 +41,7 @@ WALL_CLOCK = (
     "service",
     "stopping",
     "cli/test_serve.py",
+    "cli/test_stop.py",
     "control/test_clock.py",
     "runs/test_bench_process.py",
 )

@@ -92,7 +92,11 @@ COMMANDS = (
         "bench.cli.operation.lab_queue:app",
         "Experiments for whichever bench of the laboratory fits: list, add, campaign, remove. Each is run once.",
     ),
-    CommandEntry("stop", "bench.cli.operation.service:stop", "Stop the joint of a running service and power it off."),
+    CommandEntry(
+        "stop",
+        "bench.cli.operation.stop:stop",
+        "Stop every joint that this user moves on this machine, and power it off; with --url that of one service.",
+    ),
     CommandEntry(
         "experiments", "bench.cli.records.experiments:experiments", "List what has been run or imported, newest first."
     ),

@@ -31,12 +31,28 @@ Exit codes: 0 done; 1 the experiment did not complete (failed, tripped, stopped 
 a fault; 5 the service cannot be reached or refuses the token; 130 ended by Ctrl-C; 143 ended by SIGTERM.
 
 Environment: FRICTION_BENCH_CONFIG (as --config), FRICTION_BENCH_STORE (as --store), FRICTION_BENCH_LOG (as --log), \
-FRICTION_BENCH_URL (service for `status`, `stop` and `queue`), FRICTION_BENCH_TOKEN (token of the service).
+FRICTION_BENCH_URL (as --url: service for `status`, `stop` and `queue`), FRICTION_BENCH_TOKEN (token of the service).
 """
 
 
 class ServiceError(BenchError, ConnectionError):
     """Raised when the service cannot be reached, refuses the token, or answers with a problem."""
+
+
+class NoAnswerError(ServiceError):
+    """Raised when the service cannot be reached."""
+
+
+class StatusError(ServiceError):
+    """Raised when what is there answers with a problem.
+
+    Attributes:
+        status: of the answer.
+    """
+
+    def __init__(self, message: str, status: int) -> None:
+        super().__init__(message)
+        self.status = status
 
 
 def code_of(error: Exception) -> ExitCode:

@@ -24,6 +24,7 @@ from bench.experiments.parts.refusal import refuse_modes
 from bench.experiments.registry import ExperimentKind, find_kind, parse_parameters
 from bench.json_types import Values
 from bench.provenance import provenance
+from bench.runs import stoppable
 from bench.runs.bench_control import PACES, BenchControl, Pace, Request, RunnerStatus
 from bench.runs.connection import Connection, connect
 from bench.runs.count_check import count_doubt
@@ -49,7 +50,7 @@ class HostProcess:
         facts: kept with the provenance of each experiment, JSON-able.
     """
 
-    new_stop: Callable[[], StopRequest] = StopRequest
+    new_stop: Callable[[], StopRequest] = stoppable.new_stop
     during_run: Callable[[bool], AbstractContextManager[Any]] = nullcontext
     facts: Mapping[str, Any] = field(default_factory=dict)
 
@@ -192,7 +193,7 @@ class Runner(BenchControl):
 
     def _carry_out(self, run: ExperimentRun, prepared: Prepared) -> None:
         self._thread = threading.current_thread()  # who sees the run may wait for it, before its start has come back
-        with self._host.during_run(prepared.real_time):
+        with stoppable.moving(), self._host.during_run(prepared.real_time):
             run.carry_out(prepared, self._store, self._live)
 
     def _prepare(self, configuration: BenchConfiguration, run: ExperimentRun, kind: ExperimentKind) -> Prepared:

@@ -1,10 +1,11 @@
 """The process that serves: address, token, and an end that stops the joint first."""
 
 import gc
+import os
 import signal
 import socket
-from collections.abc import Callable
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing, contextmanager, suppress
 from types import FrameType
 from typing import NamedTuple
 
@@ -15,6 +16,7 @@ from bench import __version__
 from bench.commission.guide import ENDED
 from bench.config.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
+from bench.own_processes import OwnProcess, announced, new_file
 from bench.own_service import LOOPBACK_NAMES, is_loopback, own_file
 from bench.runs import event_log
 from bench.runs.bench_control import BenchControl
@@ -31,6 +33,7 @@ from bench.store import Store
 
 MakeApp = Callable[[Store, BenchControl, Access, Lab], FastAPI]
 """As `bench.service.app.create_app`."""
+_HERE = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104  where it is reached that listens everywhere
 LINGER_S = 2  # how long open connections are waited for at the end
 
 
@@ -124,10 +127,14 @@ def serve_bench(
                 register = TokenRegister(fixed, store.access.tokens.find)
                 register.refresh()
                 names = LOOPBACK_NAMES | {address.host, *address.names}
-                with closing(RemoteRunner(configuration, store)) as runner:
+                place = Place(address.host, port, tls is not None)
+                with (
+                    _found_by_stop(configuration.name, place, session, tls),
+                    closing(RemoteRunner(configuration, store)) as runner,
+                ):
                     access = Access(register, is_loopback(address.host), names)
                     app = make_app(store, runner, access, LabProcesses(url))
-                    for line in welcome(configuration, Place(address.host, port, tls is not None), tokens):
+                    for line in welcome(configuration, place, tokens):
                         say(line)
                     facts = {"host": address.host, "port": port, "tls": tls is not None, "rig": configuration.rig.name}
                     event_log.note("service started", **facts, version=__version__)
@@ -135,6 +142,20 @@ def serve_bench(
                     gc.enable()
                     _serve(BenchServer(app, runner, tls), listener)
     event_log.note("service ended")
+
+
+@contextmanager
+def _found_by_stop(bench: str, place: Place, token: str, tls: Certificate | None) -> Iterator[None]:
+    """While it lasts `friction-bench stop` of this user finds the service, if it has a folder to leave word in."""
+    path = new_file()
+    with ExitStack() as stack:
+        if path is not None:
+            certificate = "" if tls is None else tls.chain.read_text(encoding="ascii", errors="ignore")
+            url = place._replace(host=_HERE.get(place.host, place.host)).url
+            told = OwnProcess("friction-bench serve", bench, os.getpid(), url, token, certificate)
+            with suppress(OSError):
+                stack.enter_context(announced(path, told))
+        yield
 
 
 def _serve(server: BenchServer, listener: socket.socket) -> None:

@@ -22,14 +22,14 @@ pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 PATIENCE_S = 30.0  # for an answer of a process that others keep from running
 
 
-def _free_port() -> int:
+def free_port() -> int:
     with socket.create_server(("127.0.0.1", 0)) as probe:
         return int(probe.getsockname()[1])
 
 
 @pytest.fixture
 def served(tmp_path) -> Iterator[tuple[subprocess.Popen[str], str, str]]:
-    port = _free_port()
+    port = free_port()
     words = [sys.executable, "-m", "bench.cli", "--log", "bench.log", "serve", "--port", str(port)]
     with subprocess.Popen(words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         lines = ""
@@ -45,7 +45,7 @@ def served(tmp_path) -> Iterator[tuple[subprocess.Popen[str], str, str]]:
         process.terminate()
 
 
-def _wait_until_answering(url: str) -> None:
+def wait_until_answering(url: str) -> None:
     deadline_s = time.monotonic() + PATIENCE_S
     while True:
         try:
@@ -56,7 +56,7 @@ def _wait_until_answering(url: str) -> None:
             time.sleep(0.05)
 
 
-def _start(url: str, token: str) -> None:
+def start(url: str, token: str) -> None:
     body, headers = {"kind": "steps", "pace": "real-time"}, {"Authorization": f"Bearer {token}"}
     answer = httpx.post(f"{url}/api/v1/experiments", json=body, headers=headers, timeout=PATIENCE_S)
     assert answer.status_code == 201
@@ -64,9 +64,9 @@ def _start(url: str, token: str) -> None:
 
 def test_status_and_stop_from_another_process(served, command, tmp_path, monkeypatch):
     _, url, token = served
-    _wait_until_answering(url)
+    wait_until_answering(url)
     assert json.loads(command("status", "--url", url, "--json").stdout)["state"] == "idle"
-    _start(url, token)
+    start(url, token)
     assert "running" in command("status", "--url", url).stdout
     stopped = command("stop", "--url", url)  # with the file of the running service in the working directory
     assert stopped.exit_code == 0, stopped.output
@@ -89,8 +89,8 @@ def test_status_and_stop_from_another_process(served, command, tmp_path, monkeyp
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_the_end_of_the_service_stops_the_joint_first(served, tmp_path, number):
     process, url, token = served
-    _wait_until_answering(url)
-    _start(url, token)
+    wait_until_answering(url)
+    start(url, token)
     time.sleep(0.3)
     with httpx.stream("GET", f"{url}/api/v1/live", timeout=PATIENCE_S) as watching:  # must not hold the service open
         next(watching.iter_lines())
@@ -113,14 +113,14 @@ def test_a_token_file_of_an_earlier_version_goes_on_working(command, tmp_path, m
     file.write_text("a-token-of-long-ago\n")
     file.chmod(0o600)
     monkeypatch.setattr(server, "_serve", lambda *_: None)
-    shown = command("serve", "--port", str(_free_port())).stdout
+    shown = command("serve", "--port", str(free_port())).stdout
     assert "that of friction-bench.token" in shown
     assert "long-ago" not in shown
 
 
 def test_the_token_is_shown_once(command, monkeypatch):
     monkeypatch.setattr(server, "_serve", lambda *_: None)
-    shown = [command("serve", "--port", str(_free_port())).stdout for _ in range(2)]
+    shown = [command("serve", "--port", str(free_port())).stdout for _ in range(2)]
     assert "it is shown this once" in shown[0]
     assert "was shown at the first start" in shown[1]
     assert "friction-bench --store sqlite:" in " ".join(shown[1].split()), "another store has other tokens"
@@ -129,7 +129,7 @@ def test_the_token_is_shown_once(command, monkeypatch):
 def test_beyond_loopback_with_a_token_of_the_store(command, monkeypatch):
     monkeypatch.setattr(server, "_serve", lambda *_: None)
     assert command("token", "new", "boss", "--role", "admin").exit_code == 0
-    shown = command("serve", "--host", "0.0.0.0", "--plain-http", "--port", str(_free_port()))
+    shown = command("serve", "--host", "0.0.0.0", "--plain-http", "--port", str(free_port()))
     assert shown.exit_code == 0, shown.output
     assert "in the clear" in shown.stdout
 

@@ -111,7 +111,7 @@ def test_one_at_a_time_and_stop(idle):
 def test_stop_without_a_body_and_with_nothing_running(idle):
     answer = idle.client.post("/stop")
     assert answer.status_code == 200
-    assert answer.json() == {"detail": "Nothing was running; the joint is off.", "was_running": False}
+    assert answer.json() == {"detail": "Nothing was running on this service.", "was_running": False}
 
 
 def test_stop_gets_through_while_every_worker_thread_is_busy(idle, monkeypatch):

@@ -105,6 +105,8 @@ class Killer:
 
     def leave(self) -> None:
         """End what still runs."""
+        if self._scene is not None and self._scene.service is not None:
+            self._scene.service.client.close()
         self._programs.close()
         self._scene = None
 

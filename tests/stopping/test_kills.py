@@ -33,6 +33,19 @@ def test_what_was_committed_is_there_the_motor_off_and_the_record_says_why(kille
 
 
 @pytest.mark.timeout(300)
+def test_a_stop_from_another_terminal_ends_a_run_in_power_off(tmp_path: Path) -> None:
+    (way,) = (way for way in WAYS if way.name == "run: stop from another terminal")
+    with kills_bench(tmp_path) as bench:
+        made = Killer(bench, seed=3)
+        try:
+            ending = made.end_one(way)
+        finally:
+            made.leave()
+    assert ending.problems == []
+    assert ending.rows > 0
+
+
+@pytest.mark.timeout(300)
 def test_what_a_killed_service_recorded_comes_to_a_laboratory_that_breaks_down_itself(
     tmp_path: Path,
 ) -> None:

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 from bench.control.late_cycles import BRAKING_S
 from bench.control.recorder import Recorder
+from bench.own_processes import own_processes
+from bench.runs.stoppable import ask_to_stop
 from bench.store.upkeep.custody import LEFT_RUNNING
 from tests.drivers.conformance.benches import ANSWER_TIMEOUT_S, PERIOD_S
 from tests.stopping.bench import PATIENCE_S, WATCHDOG_S, Bench, Service, busy, wait_for
@@ -113,6 +115,14 @@ def _stop_when_busy(scene: Scene) -> float:
         return now_s
 
 
+def _stop_from_another_terminal(scene: Scene) -> float:
+    """As `friction-bench stop` does, to this process alone."""
+    (path,) = (path for path, told in own_processes() if told.process_id == scene.process.pid)
+    now_s = time.monotonic()
+    ask_to_stop(path, "friction-bench stop")
+    return now_s
+
+
 def _fill_the_disk(scene: Scene) -> float:
     """No file may grow beyond what the program has said at the terminal: what a full disk is to the database.
 
@@ -183,6 +193,7 @@ WAYS = (
     Way("run: Ctrl-C", _signals(INT), "stopped", CTRL_C),
     Way("run: Ctrl-C twice", _signals(INT, INT), "stopped", CTRL_C),
     Way("run: SIGTERM", _signals(TERM), "stopped", "SIGTERM at the terminal"),
+    Way("run: stop from another terminal", _stop_from_another_terminal, "stopped", "friction-bench stop"),
     Way("run: kill -9", _signals(KILL), "interrupted", KILLED, WATCHDOG_S + HOST_S, keeps_all=False),
     Way("run: exception in the trial", _raise, "failed", "a fault of the software"),
     Way("run: limit trip", _trip, "tripped", "position is .* allowed is"),

@@ -11,13 +11,16 @@ from bench.store.errors import NotFoundError
 from bench.study.changes import _sentence, add_effect, drop_effect
 from bench.study.compare import compare
 from bench.study.create import create_study, describe
-from bench.study.diagnosis.diagnose import diagnose
+from bench.study.diagnosis.diagnose import _ranking, diagnose
 from bench.study.diagnosis.search import search
 from bench.study.effects import effects_catalogue
 from bench.study.errors import StudyError
 from bench.study.ladder import ladder
 from bench.study.models.base import StudyModel
 from bench.study.models.study import Study
+from compensator.lab.diagnosis import diagnosis as lab
+from compensator.lab.diagnosis.diagnosis import Candidate
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.gain import Gain
 from tests.lab.synthetic import Joint, plans
 from tests.study.conftest import imported
@@ -62,12 +65,37 @@ def test_the_hidden_effect_is_named_added_and_helps(story):
 def test_what_is_not_named_says_what_it_lacks(story):
     found, after = story["diagnose"].ranking, story["diagnose after"].ranking
     assert found[0].why_not == []
+    assert all(one.why_not or one.in_class for one in found), "no row leaves the reader without a reason"
     assert all(one.why_not for one in after), "nothing is named beside it"
     for one in (*found, *after):
         assert ("score not above 0" in one.why_not) == (one.score <= 0.0)
         assert "impossible size, sign or shape" not in one.why_not, "its own reason is told"
         assert ("not named: " in one.sentence) == bool(one.why_not)
         assert all(doubt in one.sentence for doubt in one.why_not)
+
+
+def test_the_ranking_is_in_the_order_that_it_says():
+    """The lab lists one family of effects after the other."""
+    listed = [
+        ("spring", 40.0, True),
+        ("stribeck", 5.0, False),
+        ("coulomb_asymmetry", 30.0, True),
+        ("cogging", 90.0, False),
+    ]
+    candidates = [
+        Candidate(effect_named(name), (), score, 0.001 if sure else 0.5, 7.0, (), 0.1, 0.08, Gain(0.2, 0.1, 0.3), None)
+        for name, score, sure in [("viscous_asymmetry", 20.0, True), *listed]
+    ]
+    found = lab.Diagnosis("missing", "", 0.001, [("viscous_asymmetry",)], candidates)
+    told = _ranking(None, found, {"viscous_asymmetry"}, "viscous_asymmetry")
+    assert [(one.effect, one.why_not) for one in told] == [
+        ("viscous_asymmetry", []),
+        ("spring", ["viscous_asymmetry first"]),
+        ("coulomb_asymmetry", ["viscous_asymmetry first"]),
+        ("cogging", ["may be luck"]),
+        ("stribeck", ["may be luck"]),
+    ]
+    assert "not named: viscous_asymmetry first" in told[1].sentence
 
 
 def test_the_numbers_of_all_answers_agree(story, study):

@@ -46,7 +46,7 @@ def test_everything_that_a_lab_files_is_in_it(store, number, sections):
     rungs = ladder(store, number).rungs
     assert [row[3] for row in table.rows] == [f"{rung.held_out:.2%}" for rung in rungs]
     assert table.rows[1][1] == "+ viscous asymmetry"
-    assert "no model of the motion can beat that floor" in sections["The ladder"].sentences[0]
+    assert "as far as the best model can tell" in sections["The ladder"].sentences[0]
 
 
 def test_who_files_it_finds_when_who_on_what_and_what_came_out(store, number, sections):

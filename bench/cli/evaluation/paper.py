@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from bench.cli.bench_session import session_of
-from bench.cli.operation.signals import stopping_on_signals
+from bench.cli.operation.signals import stoppable_command, stopping_on_signals
 from bench.cli.operation.watch import watch
 from bench.cli.output import Json, print_json, print_section, say
 
@@ -40,7 +40,7 @@ def paper(
         if received.exit_code is not None:
             raise typer.Exit(received.exit_code)
 
-    with session.open_store() as store:
+    with session.open_store() as store, stoppable_command("paper", configuration.name):
         rows = reproduce(configuration, store, from_store, conduct=conduct, show=(lambda _: None) if as_json else _show)
     write_html(report, TITLE, [summary(rows), *(row.with_source() for row in rows)])
     if as_json:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
 
 def diagnosis(found: "Diagnosis") -> None:
     """The verdict and the ranking."""
+    from bench.study.models.diagnosis import ORDER  # imported when needed: `--help` starts at once
+
     say(found.sentence)
     if found.slight:
         say(found.advice)
@@ -42,7 +44,7 @@ def diagnosis(found: "Diagnosis") -> None:
     ]
     if rows:
         columns = ["effect", "named", "score#", "p, alone#", "held out before#", "after#", "gain#", "d'#", "why not"]
-        table("Effects by evidence", columns, rows)
+        table(f"Effects by evidence: {ORDER}", columns, rows)
     if found.provisional:
         say(found.provisional.sentence)
     for note in found.notes:

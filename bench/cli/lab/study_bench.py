@@ -6,7 +6,7 @@ import typer
 
 from bench.cli.bench_session import BenchSession
 from bench.cli.exit_codes import ExitCode
-from bench.cli.operation.signals import stopping_on_signals
+from bench.cli.operation.signals import stoppable_command, stopping_on_signals
 from bench.cli.operation.watch import watch
 from bench.cli.output import complain, say
 
@@ -45,8 +45,9 @@ def measure_models(session: BenchSession, study_id: int, quiet: bool) -> float |
     from bench.study.use import bench_configurations, by_curves_alone, keep_bench_error
 
     tried = False
-    with session.open_store() as store:
-        for model_id, configuration in bench_configurations(store, study_id, session.configuration()):
+    bench = session.configuration()
+    with session.open_store() as store, stoppable_command("study ladder --bench", bench.name):
+        for model_id, configuration in bench_configurations(store, study_id, bench):
             tried = True
             if not quiet:
                 say(f"model {model_id} on the bench")
@@ -56,7 +57,7 @@ def measure_models(session: BenchSession, study_id: int, quiet: bool) -> float |
             return None
         if not quiet:
             say("the friction curves alone on the bench")
-        configuration = by_curves_alone(store, session.configuration())
+        configuration = by_curves_alone(store, bench)
         experiment_id = _carry_out(store, configuration, quiet, "reflected load by the friction curves alone")
         return 1000.0 * float(store.experiment(experiment_id).results["rms_error_kg"])
 

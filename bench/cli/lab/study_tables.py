@@ -242,7 +242,7 @@ def ladder(found: "Ladder") -> None:
     columns = ["model#", "change", *errors, "reflected load, error [g]#"]
     table(f"Ladder of study {found.study_id}: errors in the effort, {found.rows}", columns, rows)
     if found.floor is not None:
-        say(f"floor, from repeated trials: {percent(found.floor)}")
+        say(f"floor, from repeated trials, as far as the best model can tell: {percent(found.floor)}")
 
 
 def _change(rung: "Rung") -> str:

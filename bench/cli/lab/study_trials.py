@@ -11,6 +11,7 @@ from bench.cli.exit_codes import ExitCode
 from bench.cli.lab import diagnosis_tables as tables
 from bench.cli.operation.run import carry_out
 from bench.cli.operation.service import ask
+from bench.cli.operation.signals import stoppable_command
 from bench.cli.output import print_json, say
 from bench.errors import LimitError, ParameterError
 from bench.store import Experiment
@@ -41,7 +42,8 @@ def carry_out_all(
 ) -> None:
     """Suggest, run, add and diagnose in rounds; what completed is added, also where a later one did not."""
     running = _Running(session, study_id, model_id, as_json)
-    tried = in_rounds(running.ask, running.run, running.learn, trials, at_once)
+    with stoppable_command("study suggest --start", session.configuration().name):
+        tried = in_rounds(running.ask, running.run, running.learn, trials, at_once)
     running.tell_last()
     if as_json:
         print_json(running.told())

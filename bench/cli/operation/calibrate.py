@@ -53,11 +53,12 @@ def run(
     to go on is printed.
     """
     from bench.cli.operation.calibration_run import CalibrationRun
+    from bench.cli.operation.signals import stoppable_command
     from bench.runs.sequential_calibration import Wish
 
     session, loads = session_of(context), tuple(_numbers(loads_kg))
     wish = Wish(loads, 1e-3 * accuracy_ma, 60.0 * minutes, tuple(_numbers(duties)))
-    with session.open_store() as store:
+    with session.open_store() as store, stoppable_command("calibrate run", session.configuration().name):
         again = _given(context, {"after", "as_json"})
         ids = CalibrationRun(session, store, wish, after or [], pace, note, again, as_json).carry_out()
     _fit_and_show(session, ids, True, note, as_json)

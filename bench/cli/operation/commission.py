@@ -39,7 +39,7 @@ def commission(
 
     Asks what is known, turns nothing before a person says so, and ends with a load found. Ctrl-C stops the joint.
     """
-    from bench.cli.operation.signals import stopping_on_signals
+    from bench.cli.operation.signals import stoppable_command, stopping_on_signals
     from bench.commission.bench_file import refuse_taken, write_bench
     from bench.commission.bench_table import BenchTable
     from bench.commission.evidence import Evidence
@@ -54,6 +54,7 @@ def commission(
     bench_table = BenchTable(name, section, radians(travel_deg))
     with (
         session_of(context).open_store() as store,
+        stoppable_command("commission", name),
         closing(Runner(bench_table.looking(), store, HostProcess(during_run=scheduling.undisturbed))) as runner,
     ):
         motions = Motions(runner, store, partial(person.done, "hang"), stopping_on_signals)

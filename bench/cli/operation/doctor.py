@@ -43,6 +43,7 @@ def doctor(
     A real drive has to pass `doctor --move` before experiments are run on it, and again after a change of its section
     of bench.toml or of gear, sensor or motor of the rig. A new zero is no such change.
     """
+    from bench.cli.operation.signals import stoppable_command
     from bench.runs.connection import connect
     from bench.runs.scope import scope_of, setting_to_add
 
@@ -61,10 +62,12 @@ def doctor(
     answer: dict[str, object] = {
         "connection": _represent(found), "count_doubt": doubt, "scope": [one._asdict() for one in scope],
     }  # fmt: skip
-    passed = _home(session, found, doubt, operator, answer, as_json) if home else True
-    if move and passed:
-        passed = _move(session, operator, answer, as_json)
-    elif not home and not as_json:
+    passed = True
+    if home or move:
+        with stoppable_command("doctor", session.configuration().name):
+            passed = not home or _home(session, found, doubt, operator, answer, as_json)
+            passed = passed and (not move or _move(session, operator, answer, as_json))
+    elif not as_json:
         say(session.in_full(_NEXT))
     if as_json:
         print_json(answer)

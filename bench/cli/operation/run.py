@@ -9,7 +9,7 @@ from typer.core import TyperGroup
 
 from bench.cli.bench_session import BenchSession, session_of
 from bench.cli.exit_codes import ExitCode
-from bench.cli.operation.signals import stopping_on_signals
+from bench.cli.operation.signals import stoppable_command, stopping_on_signals
 from bench.cli.operation.watch import watch
 from bench.cli.output import print_json, say, table
 
@@ -119,7 +119,7 @@ def carry_out(
     wanted = pace or (Pace.FAST if is_simulated(configuration) else Pace.REAL_TIME)
     loop = {"process": "that of the command", "scheduling": scheduling.describe()}
     host = HostProcess(during_run=scheduling.undisturbed, facts={"control_loop": loop})
-    with session.open_store() as store:
+    with session.open_store() as store, stoppable_command(f"run {kind}", configuration.name):
         runner = Runner(configuration, store, host)
         try:
             with stopping_on_signals(runner) as received:

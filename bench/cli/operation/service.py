@@ -1,4 +1,4 @@
-"""`friction-bench status` and `stop`: a service that is running, by its address."""
+"""`friction-bench status`: a service that is running, by its address; and how any command asks one."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any
@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from bench.cli.bench_session import BenchSession, session_of
-from bench.cli.exit_codes import ServiceError
-from bench.cli.output import Json, print_json, say, table
+from bench.cli.exit_codes import NoAnswerError, ServiceError, StatusError
+from bench.cli.output import Json, print_json, table
 
 if TYPE_CHECKING:
+    import ssl
+
     import httpx
 
 TIMEOUT_S = 5.0
@@ -33,31 +35,37 @@ def status(context: typer.Context, url: Url = DEFAULT_URL, as_json: Json = False
     table(url, ["what", "value"], facts.items())
 
 
-def stop(context: typer.Context, url: Url = DEFAULT_URL, as_json: Json = False) -> None:
-    """Stop the joint of a running service and power it off."""
-    found = ask(session_of(context), "POST", url, "/stop", {"reason": "friction-bench stop"})
-    print_json(found) if as_json else say(found["detail"])
-
-
 def ask(session: BenchSession, method: str, url: str, path: str, body: Mapping[str, object] | None = None) -> Any:
     """What a service answers; None where it answers nothing.
 
     Raises:
-        ServiceError: it cannot be reached, refuses, or says no.
+        NoAnswerError: it cannot be reached.
+        ServiceError: it refuses, or says no.
     """
-    import httpx  # here: its import takes longer than most commands
-
     from bench.trust import trusted
 
-    token = token_for(session, url)
+    return ask_with(token_for(session, url), trusted(url), method, url, path, body)
+
+
+def ask_with(
+    token: str | None,
+    trust: "ssl.SSLContext | bool",
+    method: str,
+    url: str,
+    path: str,
+    body: Mapping[str, object] | None = None,
+) -> Any:
+    """As `ask`, with a token and with certificates that are known."""
+    import httpx  # here: its import takes longer than most commands
+
     headers = {} if token is None else {"Authorization": f"Bearer {token}"}
     whole = f"{url}/api/v1{path}"
     try:
-        answer = httpx.request(method, whole, json=body, headers=headers, timeout=TIMEOUT_S, verify=trusted(url))
+        answer = httpx.request(method, whole, json=body, headers=headers, timeout=TIMEOUT_S, verify=trust)
     except (httpx.HTTPError, httpx.InvalidURL) as error:
-        raise ServiceError(f"{url} does not answer ({error}); is 'friction-bench serve' running there?") from error
+        raise NoAnswerError(f"{url} does not answer ({error}); is 'friction-bench serve' running there?") from error
     if answer.is_error:
-        raise ServiceError(f"{url} answered {answer.status_code}: {_detail(answer)}")
+        raise StatusError(f"{url} answered {answer.status_code}: {_detail(answer)}", answer.status_code)
     return answer.json() if answer.content else None
 
 

@@ -1,4 +1,7 @@
-"""Ctrl-C, SIGTERM and SIGHUP during a run: the joint is stopped, the record is closed, then the program ends."""
+"""Ctrl-C, SIGTERM, SIGHUP and `friction-bench stop` during a run: the joint is stopped, the record is closed.
+
+Then the program ends.
+"""
 
 import signal
 from collections.abc import Callable, Iterator
@@ -8,6 +11,8 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from bench.cli.exit_codes import ExitCode
+from bench.cli.output import remark
+from bench.own_service import own_folder
 
 if TYPE_CHECKING:
     from bench.runs.bench_control import BenchControl
@@ -35,6 +40,23 @@ def until_interrupted() -> Iterator[Callable[[], bool]]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def stoppable_command(command: str, bench: str) -> Iterator[None]:
+    """While it lasts `friction-bench stop` in another terminal stops what this command runs.
+
+    One that carries out several experiments enters it round all of them: a stop between two counts for the next.
+    """
+    from bench.runs.stoppable import stoppable
+
+    with stoppable(f"friction-bench {command}", bench) as is_found:
+        if not is_found:
+            remark(
+                f"{own_folder() or 'the home folder'} cannot be written: 'friction-bench stop' in another terminal "
+                "does not find this command; Ctrl-C here stops it"
+            )
+        yield
 
 
 @dataclass

@@ -14,7 +14,7 @@ from bench.study.compare import compare
 from bench.study.create import create_study
 from bench.study.diagnosis.diagnose import diagnose
 from bench.study.ladder import ladder
-from bench.study.models.diagnosis import Diagnosis, Ranked
+from bench.study.models.diagnosis import ORDER, Diagnosis, Ranked
 from bench.study.models.ladder import Ladder, Rung
 
 BASE = (
@@ -66,7 +66,7 @@ def hidden_effect(configuration: BenchConfiguration, store: Store, seed: int) ->
         sentences=[
             f"{len(made.trials)} recordings of a plant with one more mechanism than the model. The trials with "
             f"50 g are held out. The model's error on them is {before.error.held_out.relative:.2%} of the "
-            f"effort; repeated trials differ by {rungs.floor:.2%}, which no motion explains.",
+            f"effort; repeated trials differ by {rungs.floor:.2%}, as far as the best model can tell.",
             found.sentence,
             change.sentence,
             f"Named: {first.title.lower()}. {right}",
@@ -89,7 +89,7 @@ def _ranking(diagnosis: Diagnosis) -> Table:
         for one in diagnosis.ranking
     ]
     columns = ["effect", "score#", "held out before [%]#", "then [%]#", "gain, 90 % interval", "rivals"]
-    return Table("Effects by evidence", columns, rows)
+    return Table(f"Effects by evidence: {ORDER}", columns, rows)
 
 
 def _ladder(ladder: Ladder) -> Table:

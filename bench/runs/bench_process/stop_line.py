@@ -8,6 +8,7 @@ import mmap
 import os
 import tempfile
 import threading
+from pathlib import Path
 from typing import Self
 
 from bench.control.ending import StopRequest
@@ -38,6 +39,33 @@ class StopLine:
         file = _anonymous_file()
         os.ftruncate(file, _SIZE)
         return cls(file), file
+
+    @classmethod
+    def make_at(cls, path: Path) -> Self:
+        """A new line that another process finds by its path. This user alone may open it.
+
+        Raises:
+            OSError: it cannot be made.
+        """
+        file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
+        try:
+            os.posix_fallocate(file, 0, _SIZE)  # a full disk is met here, and not when somebody asks for STOP
+            return cls(file)
+        finally:
+            os.close(file)
+
+    @classmethod
+    def at(cls, path: Path) -> Self:
+        """The line at a path.
+
+        Raises:
+            OSError: there is none.
+        """
+        file = os.open(path, os.O_RDWR | os.O_NOFOLLOW)
+        try:
+            return cls(file)
+        finally:
+            os.close(file)
 
     def asked(self) -> int:
         """How often STOP has been asked for."""

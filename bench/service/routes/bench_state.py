@@ -166,10 +166,10 @@ async def stop(runner: RunnerOf, request: Request) -> Stopped:
     reason = await _reason(request)
     stop_all(request.app, reason)
     note(request, f"stopped experiment {found.experiment_id}: {reason}" if was_running else "nothing was running")
-    detail = (
-        "Stop accepted: the joint is being powered off." if was_running else "Nothing was running; the joint is off."
-    )
-    return Stopped(detail=detail, was_running=was_running)
+    if was_running:
+        return Stopped(detail="Stop accepted: the joint is being powered off.", was_running=True)
+    # of a joint that something else moves, another service or a command, this one knows nothing
+    return Stopped(detail="Nothing was running on this service.", was_running=False)
 
 
 async def _reason(request: Request) -> str:

@@ -1,5 +1,7 @@
 """What is missing from a model, for the page, the command line and reports."""
 
+from math import inf, isfinite
+
 from bench.store import Store
 from bench.store.records import ModelRow
 from bench.study.diagnosis.findings import conclusion_of, findings_of, not_judged
@@ -47,6 +49,7 @@ def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int
     not_told = [not_judged(effect, reason) for effect, reason in found.left_out.items()]
     advice = _advice(found, explained)
     curve = provisional(fit, found)
+    first = curve.effect.name if curve is not None else next(iter(found.classes[0]), "") if named else ""
     return Diagnosis(
         study_id=study_id,
         model_id=model_id,
@@ -56,7 +59,7 @@ def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int
         notes=[*(note.text for note in found.notes), *(one.text for one in not_told)],
         data_problems=found.data_problems,
         classes=[_class(members) for members in found.classes[:1]] if named else [],
-        ranking=[] if found.too_short else [_ranked(fit.dataset, one, named) for one in found.candidates],
+        ranking=[] if found.too_short else _ranking(fit.dataset, found, named, first),
         slight=bool(advice),
         advice=advice,
         provisional=None if curve is None else _provisional(fit.dataset, curve),
@@ -119,8 +122,29 @@ def _class(members: tuple[str, ...]) -> EffectClass:
     )
 
 
-def _ranked(dataset: Dataset, candidate: diagnosis.Candidate, named: set[str]) -> Ranked:
+def _ranking(dataset: Dataset, found: diagnosis.Diagnosis, named: set[str], first: str) -> list[Ranked]:
+    """In `ORDER`; the lab lists one family of effects after the other.
+
+    Args:
+        dataset: that was judged.
+        found: of the lab.
+        named: its class.
+        first: what is to be added before anything else; empty where nothing is.
+    """
+
+    def place(one: diagnosis.Candidate) -> tuple[bool, bool, float]:
+        if one.effect.name in named:
+            return False, False, 0.0  # as the class has them
+        return True, bool(doubts(one)), -one.score if isfinite(one.score) else inf
+
+    return [_ranked(dataset, one, named, first) for one in sorted(found.candidates, key=place)]
+
+
+def _ranked(dataset: Dataset, candidate: diagnosis.Candidate, named: set[str], first: str) -> Ranked:
     effect = candidate.effect
+    why_not = doubts(candidate)
+    if not why_not and first and effect.name not in named:
+        why_not = [f"{first} first"]
     return Ranked(
         effect=effect.name,
         title=effect.title,
@@ -136,20 +160,20 @@ def _ranked(dataset: Dataset, candidate: diagnosis.Candidate, named: set[str]) -
         d_prime=candidate.detectability,
         physical=candidate.physical,
         badge=candidate.badge,
-        why_not=doubts(candidate),
-        sentence=_sentence(candidate),
+        why_not=why_not,
+        sentence=_sentence(candidate, why_not),
         picture=_picture(dataset, candidate.picture),
     )
 
 
-def _sentence(candidate: diagnosis.Candidate) -> str:
+def _sentence(candidate: diagnosis.Candidate, why_not: list[str]) -> str:
     gain = candidate.gain
     of = " of the breakaway effort" if candidate.rows == "breakaway" else ""
     parts = [
         f"held-out error{of} {candidate.before:.2%} to {candidate.after:.2%} "
         f"({gain.in_words(candidate.before, candidate.after)})"
     ]
-    if why_not := doubts(candidate):
+    if why_not:
         parts.append(f"not named: {', '.join(why_not)}")
     if candidate.rivals:
         parts.append(f"not told apart from {', '.join(candidate.rivals)}")

@@ -14,6 +14,7 @@ ConclusionCode = Literal[
 ]
 FindingCode = NoteCode | Literal["data-problem", "not-judged"]
 Value = float | str | bool
+ORDER = "those named, then those confirmed by their own numbers, then by score"
 
 
 class Finding(StudyModel):
@@ -82,8 +83,9 @@ class Ranked(StudyModel):
         description="that in two or three words; empty where it can be what is missing", examples=["known from the rig"]
     )
     why_not: list[str] = Field(
-        description="what it lacks to be named; empty where it lacks nothing, but another one may come before it",
-        examples=[["may be luck", "gain not sure"]],
+        description="why it is not named: what it lacks, or where it lacks nothing, what is to be added first; of one "
+        "that is named, what it lacks beside the one that it cannot be told from",
+        examples=[["may be luck", "gain not sure"], ["viscous_asymmetry first"]],
     )
     sentence: str
     picture: Picture | None
@@ -119,7 +121,7 @@ class Diagnosis(StudyModel):
     notes: list[str] = Field(description="sentences; `findings` has them with their codes")
     data_problems: list[str]
     classes: list[EffectClass]
-    ranking: list[Ranked]
+    ranking: list[Ranked] = Field(description=f"of all families of effects, {ORDER}")
     slight: bool = Field(
         description="what is named is next to nothing beside what effects that were added explain: it may be what "
         "their formulas leave, and is no reason to add another"

@@ -6,7 +6,7 @@ from typing import Any
 from bench.report import Figure, Line, Points, Section, Table
 from bench.store import Store
 from bench.study.models.comparison import Comparison
-from bench.study.models.diagnosis import Diagnosis, ProvisionalTerm, Ranked
+from bench.study.models.diagnosis import ORDER, Diagnosis, ProvisionalTerm, Ranked
 from bench.study.models.study import Study
 from bench.study.report.model_sections import cell, gain_cell, number, percent
 from bench.study.report.wording import KEYS, condition_text
@@ -56,7 +56,7 @@ def diagnosis_section(title: str, found: Diagnosis, compared: Comparison) -> Sec
     shown: list[Ranked | ProvisionalTerm] = [found.provisional] if found.provisional else []
     shown += found.ranking[:PICTURES]
     figures = [figure for one in shown if (figure := picture(one, compared.effort.unit))]
-    tables = [Table("Effects by evidence", columns, rows)] if rows else []
+    tables = [Table(f"Effects by evidence: {ORDER}", columns, rows)] if rows else []
     return Section(title, [*words, *found.notes], tables, figures)
 
 

@@ -116,7 +116,8 @@ def ladder_section(found: Ladder) -> Section:
             + (
                 "No trial repeats another, so the floor is not known."
                 if floor is None
-                else f"Repeated trials differ by {floor:.2%}: no model of the motion can beat that floor."
+                else f"Floor: repeated trials differ by {floor:.2%} among themselves, as far as the best model can "
+                "tell. Only an effect with memory can go below."
             )
         ],
         [Table("Models", columns, rows)],

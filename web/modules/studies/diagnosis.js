@@ -10,6 +10,7 @@ import { Chart } from "../plots/chart.js";
 import { momentList } from "./errormap.js";
 
 const SHOWN = 6;
+const ORDER = "those confirmed by their own numbers first, then by score";
 const MOMENTS = 4; // of a candidate: all have the same to say
 const spaced = (names) => names.map((name) => name.replaceAll("_", " "));
 
@@ -42,7 +43,7 @@ export function diagnosis(place, found, { add, finish, path, linked, effort }) {
 
 // what is named comes first; where nothing is, what was tested is shown at once
 function folded(found, others) {
-  return h("details", { open: !found.classes.length }, h("summary", {}, found.classes.length ? "Less likely" : "Tested"), others);
+  return h("details", { open: !found.classes.length }, h("summary", {}, `${found.classes.length ? "Less likely" : "Tested"}: ${ORDER}`), others);
 }
 
 function className(one) {

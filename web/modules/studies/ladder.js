@@ -13,7 +13,7 @@ export function ladderPlot(place, ladder, current) {
   const plot = h("div", { class: "plot ladder", role: "figure", "aria-label": "Error of each model; the table below holds the numbers" });
   const floor = floorValue(ladder.floor);
   replace(place, plot, rungTable(ladder, current),
-    floor !== null && h("p", { class: "soft" }, `Floor: repeated trials differ by ${percent(floor)} among themselves, as far as the newest model can tell. Only an effect with memory can go below.`));
+    floor !== null && h("p", { class: "soft" }, `Floor: repeated trials differ by ${percent(floor)} among themselves, as far as the best model can tell. Only an effect with memory can go below.`));
   const names = ladder.rungs.map(rungName);
   const held = ladder.rungs.map((rung) => 100 * rung.held_out);
   const traces = [
