@@ -28,7 +28,7 @@ from compensator.lab.left_over.orders import with_found_order
 from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
-from compensator.lab.screening.evidence import least_p_value, screen
+from compensator.lab.screening.evidence import least_p_value
 from compensator.lab.screening.gathering import gather, with_noise
 
 
@@ -93,7 +93,7 @@ def best_named(fit: Fit, show_in: MotionRows) -> str | None:
     rows = fit.dataset.choice_for([effect for effect in catalogue().values() if effect.rows == show_in])
     gathered = with_noise(with_found_order(gather(widened(fit, rows), show_in)))
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
-    screening = screen(gathered, blocks)
+    screening = gathered.screened(blocks)
     return screening.evidence[0].block.name if screening.evidence else None
 
 

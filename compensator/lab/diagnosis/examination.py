@@ -19,7 +19,7 @@ from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Evidence, kept_evidence, new_directions, screen
+from compensator.lab.screening.evidence import Evidence, kept_evidence, new_directions
 
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
@@ -94,7 +94,7 @@ def _as_fitted(gathered: Candidates, screened: list[Evidence], fits: Mapping[str
         shape = fits[name].shapes[name]
         columns = gathered.fit.dataset.unchecked_columns(effect_named(name), [shape])[0]
         blocks.append(replace(item.block, columns=gathered.tested(columns), shape=shape))
-    found = {one.block.name: one for one in screen(gathered, blocks).evidence}
+    found = {one.block.name: one for one in gathered.screened(blocks).evidence}
     return sorted((found.get(item.block.name, item) for item in screened), key=lambda one: -one.score)
 
 

@@ -21,7 +21,7 @@ from compensator.lab.model.gain import predicts_better
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.base import Block
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Screening, kept_evidence, screen
+from compensator.lab.screening.evidence import Screening, kept_evidence
 from compensator.lab.screening.gathering import gather, with_noise
 
 # stages of a diagnosis, as whoever waits for it is told of them
@@ -118,12 +118,12 @@ def judged(fit: Fit) -> FourFamilies:
             "no effect of the catalogue can be judged on these trials; record " + "; ".join(gathered.left_out.values())
         )
     progress.enter(SCREENING)
-    generic = screen(gathered, gathered.curves.blocks)
-    sliding = screen(gathered, physical)
+    generic = gathered.screened(gathered.curves.blocks)
+    sliding = gathered.screened(physical)
     progress.enter(STEADY)
     steady = answer_of(fit, gathered, sliding, generic)
     progress.enter(CHAIN)
-    chain = answer_of(fit, gathered, screen(gathered, pipeline), None)
+    chain = answer_of(fit, gathered, gathered.screened(pipeline), None)
     progress.enter(MEMORY)
     memory, not_judged = _memory_of(fit)
     progress.enter(REST)
@@ -140,7 +140,7 @@ def _memory_of(fit: Fit) -> tuple[Answer | None, dict[str, str]]:
         return None, too_few
     wide = widened(fit, "moving" if dataset.rows == "sliding" else dataset.rows)
     gathered = with_noise(gather(wide, "moving"))
-    return answer_of(wide, gathered, screen(gathered, gathered.named), None), gathered.left_out
+    return answer_of(wide, gathered, gathered.screened(gathered.named), None), gathered.left_out
 
 
 def _predicts_better(one: Fit, other: Fit, rows: MotionRows) -> bool:

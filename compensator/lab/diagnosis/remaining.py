@@ -12,7 +12,7 @@ from compensator.lab.left_over.wandering import wandering_in_words
 from compensator.lab.model.fitted import Fit
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Screening, screen
+from compensator.lab.screening.evidence import Screening
 from compensator.lab.screening.gathering import gather_curves, with_noise
 
 
@@ -40,7 +40,7 @@ def what_remains(fit: Fit, show_in: MotionRows, name: str) -> list[Note]:
     if not left.is_more_than_noise:
         return []
     white = with_noise(grown)
-    rest = screen(white, white.curves.blocks)
+    rest = white.screened(white.curves.blocks)
     if rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
         variable, way = way_of(rest.evidence[0].block.name)
         return [_structure_remains(name, DRIVERS[variable].title, way)]

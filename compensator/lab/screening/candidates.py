@@ -10,6 +10,7 @@ from compensator.lab.effects.effect import MotionRows
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.screening.base import Base, Block
+from compensator.lab.screening.evidence import Screening, screen
 from compensator.lab.screening.noise import Noise
 
 WITH_CHAIN = 0  # base with all columns that the measuring chain can produce; others lack what an effect stands in for
@@ -97,6 +98,11 @@ class Candidates:
             noise=noise,
             coloured=self.bases,
         )
+
+    def screened(self, blocks: list[Block]) -> Screening:
+        """Evidence for some of them, whitened."""
+        assert self.noise is not None
+        return screen(self.bases, blocks, self.noise.known_from)
 
     def as_measured(self, index: int) -> Base:
         """One of the bases on weighted rows, every one as it was measured."""

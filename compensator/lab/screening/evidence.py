@@ -15,7 +15,6 @@ from compensator.lab.chance import LEAST_STATED, SIGN_FLIPS
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.screening.base import Base, Block
-from compensator.lab.screening.candidates import Candidates
 
 SCREENINGS = 5  # of one diagnosis: steady effects, free curves, effects with memory, breakaway, the measuring chain
 DRAWS = 9999
@@ -56,18 +55,17 @@ class Screening:
     chance: Callable[[float], float] | None = None
 
 
-def screen(gathered: Candidates, blocks: Sequence[Block]) -> Screening:
+def screen(bases: Sequence[Base], blocks: Sequence[Block], known_from: int) -> Screening:
     """Judge every block on whitened rows, against noise that is known.
 
     Where a few stretches hold all of an effect, as those at the highest speed do of drag, their flips can never say
     how sure it is; the noise of all rows can. The null is Gaussian.
 
     Args:
-        gathered: with its noise.
-        blocks: candidates, of its own.
+        bases: what blocks are judged on top of, whitened.
+        blocks: candidates, whitened.
+        known_from: how many independent stretches the noise is learnt from.
     """
-    assert gathered.noise is not None
-    bases, known_from = gathered.bases, gathered.noise.known_from
     found = [(block, bases[block.base], new_directions(bases[block.base], block)) for block in blocks]
     found = [(block, base, directions) for block, base, directions in found if directions.shape[1]]
     if not found:

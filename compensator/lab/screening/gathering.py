@@ -19,7 +19,7 @@ from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.candidates import Candidates, Curves
 from compensator.lab.screening.discrepancy import model_columns
-from compensator.lab.screening.evidence import most_likely, screen
+from compensator.lab.screening.evidence import most_likely
 from compensator.lab.screening.generic import free_curves
 from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.nuisance import nuisance_columns
@@ -158,4 +158,4 @@ def _random_effects(gathered: Candidates) -> list[RandomEffect]:
 
 def _pays(gathered: Candidates, block: Block) -> bool:
     """Whether the evidence of whitened rows pays for a block's parameters and shapes."""
-    return any(item.score > 0.0 for item in screen(gathered, [block]).evidence)
+    return any(item.score > 0.0 for item in gathered.screened([block]).evidence)

@@ -10,7 +10,6 @@ from scipy.stats import binom
 
 from compensator.lab.chance import chance_in_words
 from compensator.lab.diagnosis import diagnose as diagnose_module
-from compensator.lab.diagnosis import four_families
 from compensator.lab.diagnosis.data_checks import data_problems
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
@@ -23,6 +22,7 @@ from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.candidates import Candidates
 from tests.lab.far_side import ARM_KG_M2, loose_teeth, twisting
 from tests.lab.synthetic import FACTS, Bench, Joint, Law, Plan, at_temperature, plans, recordings
 
@@ -263,14 +263,14 @@ def test_what_no_formula_describes_is_called_unknown(law, driver):
     assert found.driver == driver
     assert driver in found.sentence
     assert found.p_value <= 0.01
-    assert f"p = {found.p_value:.3g}" in found.sentence
+    assert chance_in_words(found.p_value) in found.sentence
 
 
 def with_luck(monkeypatch, p_value):
     """A diagnosis of weight-dependent friction whose every screening says so small a p."""
-    whole = four_families.screen
+    whole = Candidates.screened
     monkeypatch.setattr(
-        four_families, "screen", lambda *given: replace(whole(*given), p_value=p_value, chance=lambda _: p_value)
+        Candidates, "screened", lambda *given: replace(whole(*given), p_value=p_value, chance=lambda _: p_value)
     )
     return diagnosis_of(recordings(Joint(extra=PLANTED["weight_friction"]), trials=plans((0.0, 0.25)), seed=3))
 

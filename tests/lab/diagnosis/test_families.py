@@ -33,7 +33,7 @@ def twisted():
     made = recordings(Joint(extra=twisting), trials=[*plans((0.0, 0.25))[::2], *SHAKEN[::2]], seed=4)
     fit = widened(fit_model(make_dataset(made, drawn, Processing()), default_effects(drawn)), "moving")
     gathered = with_noise(gather(fit, "moving"))
-    return fit, gathered, screen(gathered, gathered.named)
+    return fit, gathered, gathered.screened(gathered.named)
 
 
 SURE = Gain(0.3, 0.2, 0.4)
@@ -87,7 +87,7 @@ def test_in_steady_sliding_what_cannot_be_its_formula_is_left_to_free_curves(mon
         families, "examine", lambda *given: [replace(one, **sure) for one in examination.examine(*given)]
     )
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
-    answer = answer_of(fit, gathered, screen(gathered, blocks), None)
+    answer = answer_of(fit, gathered, gathered.screened(blocks), None)
     assert answer.verdict == "nothing"
 
 
@@ -111,7 +111,7 @@ def test_in_steady_sliding_a_name_must_hold_in_the_model_that_would_be_had(monke
     gathered = with_noise(gather(fit))
     monkeypatch.setattr(examination, "held_out_gain", lambda *_: gain)
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
-    answer = answer_of(fit, gathered, screen(gathered, blocks), None)
+    answer = answer_of(fit, gathered, gathered.screened(blocks), None)
     assert (answer.verdict, answer.candidates[0].effect.name) == (verdict, "cogging")
     assert (answer.explained is not None) == (verdict == "missing")
 
@@ -129,7 +129,7 @@ def test_what_does_not_hold_leaves_its_place_to_the_next(monkeypatch, extra, can
     cannot = Impossible("it cannot be", "unphysical size")
     monkeypatch.setattr(examination, "why_impossible", lambda _, name: cannot if name == cannot_be else POSSIBLE)
     blocks = [block for block in gathered.named if not effect_named(block.name).pipeline]
-    answer = answer_of(fit, gathered, screen(gathered, blocks), None)
+    answer = answer_of(fit, gathered, gathered.screened(blocks), None)
     assert (answer.verdict, answer.candidates[0].effect.name) == (verdict, first)
 
 
@@ -154,11 +154,9 @@ def test_what_explains_less_is_a_shadow_where_it_keeps_little_beside_what_explai
     blocks = [Block("spring", most[:, None], 0, 1), Block("cogging", less[:, None], 0, 1)]
     gathered = SimpleNamespace(
         show_in=rows,
-        bases=[base],
-        noise=SimpleNamespace(known_from=30),
         with_block=lambda block: SimpleNamespace(bases=[base.extended(block.columns)]),
     )
-    shapes = screen(gathered, blocks).evidence
+    shapes = screen([base], blocks, 30).evidence
     family = families._Family(gathered, None, shapes, [])
     assert [one.block.name for one in shapes] == ["spring", "cogging"]
     assert family._shadow_of(shapes[0]) == ""

@@ -15,7 +15,6 @@ from compensator.lab.model.weights import BENDS, RowWeights, determination, row_
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.evidence import screen
 from compensator.lab.screening.gathering import gather, gather_curves, with_noise
 from tests.lab.synthetic import FACTS, Bench, Joint, recordings
 
@@ -87,7 +86,7 @@ def test_models_are_held_against_each_other_by_rows_that_they_determine(straight
     made = [estimated(one, random) for one in recordings(joint, Bench(noise=0.002), seed=3)]
     fit = fit_model(make_dataset(made, FACTS, Processing()), [*default_effects(FACTS), "dead_time"])
     gathered = with_noise(gather(fit))
-    found = screen(gathered, gathered.named).evidence
+    found = gathered.screened(gathered.named).evidence
     wave = examine(fit, gathered, [one for one in found if one.block.name == "position_periodic_friction"][:1])[0]
     assert wave.gain.low > 0.15
     assert (determination(straight) == 1.0).all()

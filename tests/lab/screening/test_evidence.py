@@ -1,7 +1,5 @@
 """The evidence of whitened rows: of mere noise, and of noise with something in it."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from scipy.signal import lfilter
@@ -18,7 +16,7 @@ def smooth(random: np.random.Generator, count: int) -> np.ndarray:
 
 
 def screened(bases: list[Base], blocks: list[Block]) -> Screening:
-    return screen(SimpleNamespace(bases=bases, noise=SimpleNamespace(known_from=KNOWN_FROM)), blocks)
+    return screen(bases, blocks, KNOWN_FROM)
 
 
 def problem(seed: int, planted: float = 0.0) -> tuple[list[Base], list[Block]]:

@@ -66,7 +66,7 @@ def screened(noise: Noise, base: Base, blocks: list[Block]):
     """Blocks screened on whitened rows."""
     white = Base.of(noise.whitened(base.basis), noise.whitened(base.residual[:, None])[:, 0])
     own = [Block(one.name, noise.whitened(one.columns), 0, 1) for one in blocks]
-    return screen(SimpleNamespace(bases=[white], noise=noise), own)
+    return screen([white], own, noise.known_from)
 
 
 def from_stop_to_stop() -> RandomEffect:
@@ -180,9 +180,7 @@ def test_slow_rows_have_noise_of_a_colour_of_their_own():
         return np.where(slow, coloured(random, 0.9), random.standard_normal(len(ALL)))
 
     shares = np.array([directions.T @ noise() for _ in range(400)])
-    found = [
-        np.diag(covariance(Noise.learnt(dataset(), ALL, Base(NOTHING, noise())), directions)) for _ in range(20)
-    ]
+    found = [np.diag(covariance(Noise.learnt(dataset(), ALL, Base(NOTHING, noise())), directions)) for _ in range(20)]
     assert np.mean(found, axis=0) == pytest.approx(shares.var(axis=0), rel=0.25)
     assert np.mean(found, axis=0)[0] > 3.0 * np.mean(found, axis=0)[1]
 
@@ -193,9 +191,7 @@ def test_what_static_friction_scatters_from_stop_to_stop_is_in_the_noise(deviati
     strokes = from_stop_to_stop()
     own = strokes.columns() / np.sqrt(np.bincount(strokes.group, strokes.share**2)[strokes.group][:, None])
     true = np.mean([np.sum((own.T @ scattering(random, deviation)) ** 2) for _ in range(60)])
-    noises = [
-        Noise.learnt(dataset(), ALL, Base(NOTHING, scattering(random, deviation)), [strokes]) for _ in range(8)
-    ]
+    noises = [Noise.learnt(dataset(), ALL, Base(NOTHING, scattering(random, deviation)), [strokes]) for _ in range(8)]
     assert np.mean([np.trace(covariance(noise, own)) for noise in noises]) == pytest.approx(true, rel=0.3)
 
 
