@@ -18,6 +18,7 @@ from compensator.lab.model.gain import held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.screening.base import Block
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence, kept_evidence, new_directions
 
@@ -88,14 +89,19 @@ def _fitted(fit: Fit, item: Evidence, sliding: Fit | None) -> Fit:
 
 def _as_fitted(gathered: Candidates, screened: list[Evidence], fits: Mapping[str, Fit]) -> list[Evidence]:
     """Evidence for effects as they are in their models, best score first; as screened where that adds nothing."""
-    blocks = []
-    for item in screened:
-        name = item.block.name
-        shape = fits[name].shapes[name]
-        columns = gathered.fit.dataset.unchecked_columns(effect_named(name), [shape])[0]
-        blocks.append(replace(item.block, columns=gathered.tested(columns), shape=shape))
+    blocks = [_as_in(gathered, item.block, fits[item.block.name]) for item in screened]
     found = {one.block.name: one for one in gathered.screened(blocks).evidence}
     return sorted((found.get(item.block.name, item) for item in screened), key=lambda one: -one.score)
+
+
+def _as_in(gathered: Candidates, block: Block, fit: Fit) -> Block:
+    """An effect as it is in its model: its columns, or, where it moves what was measured in time, what it explains."""
+    effect, shape = effect_named(block.name), fit.shapes[block.name]
+    if effect.driver == "effort_rate":
+        columns = (gathered.fit.residual - fit.residual)[:, None]
+    else:
+        columns = gathered.fit.dataset.unchecked_columns(effect, [shape])[0]
+    return replace(block, columns=gathered.tested(columns), shape=shape)
 
 
 def explains(kept: dict[str, float], other: Evidence) -> bool:

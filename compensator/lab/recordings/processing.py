@@ -21,7 +21,7 @@ DIFFERENTIATION_FACTOR = 3.0  # differentiation cut-off / final cut-off; below 3
 REGULAR_SHARE = 0.05  # of the period: jitter that counts as regular sampling
 SATURATED_DUTY = 0.98
 EDGE_PERIODS = 3.0  # of the final cut-off, dropped at both ends of a trial, where the filter starts from nothing
-MASK_PERIODS = 1.0  # of the final cut-off, dropped on both sides of an unusable sample, which the filter spreads
+MASK_PERIODS = 2.0  # of the final cut-off, dropped on both sides of an unusable sample, which the filter spreads
 
 
 @dataclass(frozen=True, slots=True)
