@@ -16,6 +16,7 @@ from sim_backend.second_plant.textbook_mechanisms import TEXTBOOK
 MECHANISMS: dict[str, Mechanism] = {**TEXTBOOK, **FOREIGN}
 Level = Literal["textbook", "foreign"]
 EffortChannel = Literal["current", "torque", "duty", "estimate"]
+LONGEST_BY_THE_BOOK_RAD = 4e-5  # pre-sliding distance that no recording shows
 
 
 @dataclass(frozen=True)
@@ -123,8 +124,9 @@ class DrawnJoint:
     hidden: tuple[Hidden, ...]
 
     def by_the_book(self) -> "DrawnJoint":
-        """The same joint with friction that the base model can state: viscous, of one Coulomb level, even."""
+        """The same joint with friction that the base model can state: viscous, of one Coulomb level, even, stiff."""
         laws = {"viscous_power": 1.0, "film_rad_s": 0.0, "second_level": 0.0, "path_scatter": 0.0}
+        laws["bristle_rad"] = min(self.physics.bristle_rad, LONGEST_BY_THE_BOOK_RAD)
         return replace(self, level="textbook", physics=self.physics._replace(**laws))
 
     def physics_of(self, trial: Trial, without: frozenset[str] = frozenset()) -> Physics:
@@ -186,7 +188,7 @@ def physics_drawn(random: np.random.Generator, level: Level) -> tuple[Physics, S
         stribeck_power=between(0.5, 2.5) if foreign else float(random.choice([1.0, 2.0])),
         viscous_n_m=between(0.04, 0.12) * peak_n_m / top_rad_s,
         viscous_power=between(0.6, 1.4) if foreign else 1.0,
-        bristle_rad=log_between(5e-5, 2e-4) if foreign else log_between(1e-5, 4e-5),
+        bristle_rad=log_between(5e-5, 2e-4) if foreign else log_between(1e-5, LONGEST_BY_THE_BOOK_RAD),
         bristle_damping_n_m_s=0.0,
         gear_c=REFERENCE_C,
         winding_c=REFERENCE_C,

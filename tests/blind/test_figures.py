@@ -71,6 +71,30 @@ def test_p_values_of_complete_models_are_held_against_a_uniform_distribution() -
     assert not cautious.reached
 
 
+@pytest.mark.parametrize(
+    ("first", "named", "own", "right"),
+    [
+        ("pre_sliding", ("pre_sliding", "spring"), ("pre_sliding",), 1.0),
+        ("pre_sliding", ("pre_sliding",), ("pre_sliding",), 0.0),  # what is hidden is not named
+        ("pre_sliding", ("pre_sliding", "spring"), (), 0.0),  # of no law that the joint has
+        ("spring", ("spring",), ("pre_sliding",), 1.0),
+    ],
+)
+def test_a_name_of_the_joints_own_friction_is_right_where_what_is_hidden_follows(first, named, own, right) -> None:
+    one = _result("single", "spring", (first,), 1.0, 9.0)
+    assert one.answer is not None
+    searched = replace(one.answer, named=tuple((name,) for name in named))
+    found = [replace(one, answer=searched, own=own)]
+    assert _figure(found, "named first where").measured == right
+    assert _figure(found, "truth in the class").measured == right
+
+
+def test_of_other_laws_a_name_that_none_of_them_has_is_wrong() -> None:
+    joint = _result("other-laws", "", ("viscous_power",), 0.0, 0.0)
+    results = [replace(joint, own=own) for own in (("viscous_power",), ("pre_sliding",), ())]
+    assert _figure(results, "wrongly named though nothing is hidden").measured == pytest.approx(2 / 3)
+
+
 def test_a_flag_beside_other_laws_of_friction_is_right() -> None:
     flagged = _result("single", "spring", ("spring",), 1.0, 9.0, unknown=True)
     results = [flagged, replace(flagged, laws=0.05), replace(flagged, laws=0.2)]

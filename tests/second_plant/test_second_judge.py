@@ -9,7 +9,16 @@ import pytest
 from bench.errors import ParameterError
 from bench.evaluation.blind.result import Result
 from bench.evaluation.blind.second_judge import SECOND_FAMILIES, draw_second, judge_second, second_items_of
-from bench.evaluation.blind.second_plant import ABSORBED, KNOWN, NAMES, OUTSIDE, recordings_of, rig_of, second_joint
+from bench.evaluation.blind.second_plant import (
+    ABSORBED,
+    KNOWN,
+    LAWS,
+    NAMES,
+    OUTSIDE,
+    recordings_of,
+    rig_of,
+    second_joint,
+)
 from compensator.lab.effects.catalogue import catalogue, default_effects
 from compensator.lab.recordings.facts import Facts
 from sim_backend.second_plant.joint import MECHANISMS
@@ -37,6 +46,14 @@ def test_a_mechanism_gets_the_r_that_is_asked(name):
     joint = second_joint(21, (name,), (0.5,), "textbook")
 
     assert joint.evidences[0].ratio == pytest.approx(0.5, rel=0.35)
+
+
+def test_what_the_catalogue_calls_a_joints_own_friction_is_no_wrong_name():
+    textbook, foreign = (second_joint(21, (), (), level) for level in ("textbook", "foreign"))
+
+    assert textbook.own == ()
+    assert {"viscous_power", "pre_sliding", "position_periodic_friction"} <= set(foreign.own)
+    assert set(LAWS.values()) <= set(catalogue())
 
 
 def test_the_lab_sees_recordings_and_a_rig_without_what_is_hidden():

@@ -123,10 +123,10 @@ def _uniform(answered: Sequence[Result]) -> Figure:
 
 
 def _named_by_other_laws(answered: Sequence[Result]) -> Figure:
-    """Friction by laws that the base model does not have may be flagged; a name for it is wrong."""
-    what = "named though nothing is hidden, friction by laws outside the base model"
+    """Friction by laws that the base model does not have may be flagged; a name that none of them has is wrong."""
+    what = "wrongly named though nothing is hidden, friction by laws outside the base model"
     among = [one for one in answered if one.family == "other-laws"]
-    return _share(what, 0.02, among, lambda one: bool(_answer(one).first), at_most=True)
+    return _share(what, 0.02, among, _is_wrong, at_most=True)
 
 
 def _outside(answered: Sequence[Result]) -> list[Figure]:
@@ -230,11 +230,21 @@ def _must_be_named(one: Result) -> bool:
 
 
 def _is_right(one: Result) -> bool:
-    return bool(_first(one)) and _first(one)[0] == one.names[0]
+    return _first(one)[:1] == one.names[:1] or _named_beside_laws(one)
+
+
+def _is_wrong(one: Result) -> bool:
+    return bool(_first(one)) and _first(one)[0] not in one.own
 
 
 def _in_class(one: Result) -> bool:
-    return one.names[0] in _first(one)
+    return one.names[0] in _first(one) or _named_beside_laws(one)
+
+
+def _named_beside_laws(one: Result) -> bool:
+    """Whether the first name is that of a law of the joint's own friction, and what is hidden is named after it."""
+    first = _first(one)[:1]
+    return bool(first) and first[0] in one.own and one.names[:1] in [names[:1] for names in _answer(one).named]
 
 
 def _among_three(one: Result) -> bool:
@@ -264,7 +274,7 @@ def _is_exact(one: Result) -> bool:
 
 def _extra(one: Result) -> bool:
     """Whether something is named that is no right name of anything that is hidden."""
-    right = {*one.names, *(name for truth in one.truths for name in ACCEPTED.get(truth, ()))}
+    right = {*one.names, *one.own, *(name for truth in one.truths for name in ACCEPTED.get(truth, ()))}
     return any(names[0] not in right for names in _answer(one).named)
 
 

@@ -98,6 +98,7 @@ class Result:
         withheld_left: standing of the truth beside what was named in its place; None where the oracle cannot say.
         settled: what came of the trials that the lab asked for; None where it was not asked, or had no rivals.
         laws: r of friction laws that the base model does not have, whatever else is hidden.
+        own: what the catalogue calls these laws: names that are right as well.
     """
 
     __pydantic_config__ = _NOTHING_ELSE
@@ -117,6 +118,7 @@ class Result:
     withheld: LabAnswer | None = None
     withheld_left: Standing | None = None
     laws: float = 0.0
+    own: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, object]:
         """Nested dicts."""

@@ -89,7 +89,7 @@ def judge_second(item: Item) -> Result:
     try:
         fit = base_fit(recordings_of(joint), rig_of(joint))
         began = time.process_time()
-        answer = ask_lab(fit, several=len(names) > 1)
+        answer = ask_lab(fit, several=len(names) > 1 or bool(joint.own))
         seconds = time.process_time() - began
         gathered = gather(fit)
         error = held_out(_whole(fit, names)).relative
@@ -99,11 +99,11 @@ def judge_second(item: Item) -> Result:
     except LabError as refusal:
         return Result(
             item.key, item.family, joint.truths, names, joint.sizes, None, standings, outside, float("nan"),
-            refusal=str(refusal), laws=joint.laws,
+            refusal=str(refusal), laws=joint.laws, own=joint.own,
         )  # fmt: skip
     return Result(
         item.key, item.family, joint.truths, names, joint.sizes, answer, standings, outside, error, rivals, seconds,
-        withheld=unlisted, withheld_left=left, laws=joint.laws,
+        withheld=unlisted, withheld_left=left, laws=joint.laws, own=joint.own,
     )  # fmt: skip
 
 

@@ -51,6 +51,14 @@ NAMES: dict[str, str] = {
 ABSORBED = {"asymmetric_coulomb": "offset", "emf_sheet": "viscous"}
 """Mechanism -> effect of every model that does the same: no recording of the joint can tell."""
 
+LAWS: dict[str, str] = {
+    "bristle_rad": "pre_sliding",
+    "viscous_power": "viscous_power",
+    "film_rad_s": "frictional_lag",
+    "path_scatter": "position_periodic_friction",
+}
+"""Quantity of a joint's own friction that is not as in textbooks -> effect of the catalogue that it is."""
+
 KNOWN = tuple(name for name in NAMES if name not in ABSORBED)
 OUTSIDE = tuple(FOREIGN)
 FIRST_SIZE, LEAST_RATIO = 0.1, 0.003
@@ -77,6 +85,12 @@ class SecondJoint:
     def truths(self) -> tuple[str, ...]:
         """Names of the mechanisms that it hides."""
         return tuple(hidden.name for hidden in self.drawn.hidden)
+
+    @property
+    def own(self) -> tuple[str, ...]:
+        """Effects of the catalogue that its friction has by laws of its own, whatever it hides."""
+        book, own = self.drawn.by_the_book().physics, self.drawn.physics
+        return tuple(name for quantity, name in LAWS.items() if getattr(own, quantity) != getattr(book, quantity))
 
     @property
     def sizes(self) -> tuple[float, ...]:
