@@ -3,7 +3,11 @@
 import math
 from dataclasses import dataclass
 
+from bench.config import quantities
+
 TURN = 2.0 * math.pi
+ENDINGS = {unit: ending for ending, unit in quantities.UNITS.items()} | {"1": ""}
+"""What the name of a channel ends in, by its SI unit."""
 
 
 @dataclass(frozen=True, slots=True)

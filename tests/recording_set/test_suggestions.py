@@ -5,6 +5,7 @@ import pytest
 from bench.recording_set import Mapping
 from bench.recording_set.text.suggestions import _UNITS, suggestion
 from bench.recording_set.text.toml_file import parse_toml
+from bench.recording_set.units import ENDINGS
 from compensator.lab.recordings.recording import CHANNELS
 
 
@@ -39,5 +40,5 @@ def test_far_names_suggest_nothing() -> None:
 
 
 def test_every_unit_leads_to_a_unit_of_a_channel() -> None:
-    suffixes = tuple(f"_{si_unit}" for si_unit, _ in _UNITS.values() if si_unit)
-    assert all(any(name.endswith(suffix) for name in CHANNELS) for suffix in suffixes)
+    endings = {ENDINGS[unit.si] for unit in _UNITS.values()}
+    assert all(any(name.endswith(ending) for name in CHANNELS) for ending in endings)

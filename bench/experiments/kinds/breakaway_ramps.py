@@ -13,11 +13,12 @@ from bench.config.quantities import quantity
 from bench.config.reflected_load import load_current_a
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure, Reading
-from bench.errors import LimitError, OutOfRange, quantity_message
+from bench.errors import LimitError, quantity_message
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, a_current, trial_plan
 from bench.experiments.parts.excursion import BRAKING_SHARE, comparing_cycles, slip_index
 from bench.experiments.parts.joint import Joint, Part
-from bench.experiments.parts.refusal import refuse_angles, refuse_load, refuse_many, refuse_servo
+from bench.experiments.parts.refusal import refuse_angles, refuse_load, refuse_many, refuse_servo, refuse_short
+from bench.experiments.parts.search import STILL_COUNTS
 from bench.json_types import Value, objects
 from drivers.contract import Command, Mode
 
@@ -76,7 +77,7 @@ def _rest(
     joint: Joint, parameters: BreakawayRampsParameters, configuration: BenchConfiguration, dwell_s: float
 ) -> Part[float]:
     """Ease to the current of the rest and dwell; how long the joint has stood by then [s]."""
-    period_s, still_rad = configuration.control.period_s, 1.5 * resolution_rad(configuration.rig)
+    period_s, still_rad = configuration.control.period_s, STILL_COUNTS * resolution_rad(configuration.rig)
     begin_a, end_a = joint.command_a, _rest_current_a(parameters, configuration)
     ease, dwell = ceil(EASE_S / period_s), ceil(dwell_s / period_s)
     stood_rad, stood = joint.reading.sample.position_rad, configuration.motion.settled_cycles
@@ -187,12 +188,8 @@ def _refuse_excursion(parameters: BreakawayRampsParameters, configuration: Bench
     cycles = comparing_cycles(parameters.slip_speed_rad_s, period_s, count_rad)
     compared_rad = 2.0 * parameters.slip_speed_rad_s * cycles * period_s
     least_rad = max(2.0 * (configuration.rig.gear.backlash_rad or 0.0), compared_rad)
-    if parameters.excursion_rad < least_rad:
-        why = "twice the backlash, or what slip_speed_rad_s makes of it"
-        message = quantity_message(
-            "excursion_rad", parameters.excursion_rad, f"at least {least_rad:.3g}", "rad", why=why
-        )
-        raise LimitError(message, OutOfRange("excursion_rad", parameters.excursion_rad, "rad", low=least_rad))
+    why = "twice the backlash, or what slip_speed_rad_s makes of it"
+    refuse_short("excursion_rad", parameters.excursion_rad, least_rad, why)
 
 
 def _duration_s(parameters: BreakawayRampsParameters, configuration: BenchConfiguration) -> float:

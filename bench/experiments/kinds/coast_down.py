@@ -19,6 +19,7 @@ from bench.experiments.parts.excursion import Excursion
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.profile import SetPoint, run_up
 from bench.experiments.parts.refusal import refuse_coasting, refuse_load, refuse_servo, refuse_speed
+from bench.experiments.parts.search import STILL_COUNTS
 from bench.experiments.parts.stroke import StrokeSettings, refuse_travel
 from bench.json_types import Value, numbers
 from drivers.contract import Command, Mode
@@ -88,7 +89,7 @@ def _coast(
 ) -> Part[tuple[list[Reading], bool]]:
     """The readings, and whether it stands."""
     command = OFF if parameters.released == "off" else Command(Mode.CURRENT, 0.0)
-    still_rad, settled = 1.5 * resolution_rad(configuration.rig), configuration.motion.settled_cycles
+    still_rad, settled = STILL_COUNTS * resolution_rad(configuration.rig), configuration.motion.settled_cycles
     readings: list[Reading] = []
     rest_rad, still = joint.reading.sample.position_rad, 0
     for cycle in range(ceil(parameters.coast_s / configuration.control.period_s)):

@@ -7,13 +7,13 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure
-from bench.errors import ExperimentError, LimitError, OutOfRange, quantity_message
+from bench.errors import ExperimentError
 from bench.experiments.analysis.commissioning_checks import Finding, Push, findings, position_findings
 from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, results_of_the_trial, trial_plan
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.position_push import push_there_and_back
 from bench.experiments.parts.push import PushSettings, push
-from bench.experiments.parts.refusal import refuse_angles, refuse_currents
+from bench.experiments.parts.refusal import refuse_angles, refuse_currents, refuse_short
 from drivers.contract import Mode
 
 MARGIN_RAD = 0.5  # what the joint may coast beyond the excursion, or hang beside angle 0
@@ -51,12 +51,7 @@ def _refuse(parameters: CommissioningParameters, configuration: BenchConfigurati
     refuse_angles("angle 0", [0.0], parameters.excursion_rad + MARGIN_RAD, configuration)
     refuse_currents(configuration)
     least_rad = 20.0 * resolution_rad(configuration.rig)
-    if parameters.excursion_rad < least_rad:
-        why = "20 encoder counts"
-        message = quantity_message(
-            "excursion_rad", parameters.excursion_rad, f"at least {least_rad:.3g}", "rad", why=why
-        )
-        raise LimitError(message, OutOfRange("excursion_rad", parameters.excursion_rad, "rad", low=least_rad))
+    refuse_short("excursion_rad", parameters.excursion_rad, least_rad, "20 encoder counts")
 
 
 def commission(parameters: CommissioningParameters, configuration: BenchConfiguration) -> Procedure:

@@ -16,12 +16,12 @@ from bench.errors import ConfigurationError, ExperimentError, LimitError, quanti
 from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, results_of_the_trial, trial_plan
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint
+from bench.experiments.parts.search import STILL_COUNTS
 from drivers.contract import Command, Mode
 
 NAME = "homing"
 OFF_RAD = "off_rad"  # result: what drive.zero_rad grows by
 MARGIN_RAD = 0.3  # beyond the travel, for what the joint overshoots
-STILL_COUNTS = 1.5
 SEARCH_SHARE = 0.75  # of the current that the search takes; all of it tells a stop from a weight that is too heavy
 PRESSING_SHARE = 0.9  # of that: the servo presses against something
 PATIENCE_S = 5.0  # beyond twice the time of the travel

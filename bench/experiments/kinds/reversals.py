@@ -13,12 +13,11 @@ from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import quantity
 from bench.config.rig import resolution_rad
 from bench.control.cycle import Procedure, Reading
-from bench.errors import LimitError, OutOfRange, quantity_message
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan, trial_plan
 from bench.experiments.parts.excursion import BRAKING_SHARE
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.profile import SetPoint, Trapezoid
-from bench.experiments.parts.refusal import refuse_angles, refuse_load, refuse_servo, refuse_speed
+from bench.experiments.parts.refusal import refuse_angles, refuse_load, refuse_servo, refuse_short, refuse_speed
 from bench.json_types import Value, numbers
 
 Amplitude = Annotated[float, Field(gt=0)]
@@ -135,12 +134,7 @@ def _refuse(parameters: ReversalsParameters, configuration: BenchConfiguration) 
     for amplitude_rad in parameters.amplitudes_rad:
         ends_rad = [parameters.angle_rad - amplitude_rad, parameters.angle_rad + amplitude_rad]
         refuse_angles("angle_rad and an amplitude of amplitudes_rad", [0.0, *ends_rad], OVERSHOOT_RAD, configuration)
-        if amplitude_rad < least_rad:
-            why = f"{LEAST_COUNTS:g} encoder counts"
-            message = quantity_message(
-                "an amplitude of amplitudes_rad", amplitude_rad, f"at least {least_rad:.3g}", "rad", why=why
-            )
-            raise LimitError(message, OutOfRange("an amplitude of amplitudes_rad", amplitude_rad, "rad", low=least_rad))
+        refuse_short("an amplitude of amplitudes_rad", amplitude_rad, least_rad, f"{LEAST_COUNTS:g} encoder counts")
     refuse_speed("speed_rad_s", parameters.speed_rad_s, configuration)
     refuse_servo(configuration)
 

@@ -100,8 +100,7 @@ class PairJoints:
 
     def end(self) -> PairPart[None]:
         """The master off, the slave back to angle 0, where it may be left without power."""
-        yield from self._alone(self._joint.move(0.0))
-        yield from self._alone(self._joint.settle(0.0))
+        yield from self._alone(self._joint.rest_at(0.0))
 
     def _convey_cycle(self, law: Reflection, reach: Reach | None) -> PairPart[Conveyed]:
         master = self._last().master

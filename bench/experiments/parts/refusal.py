@@ -62,6 +62,13 @@ def refuse_angles(name: str, angles_rad: Iterable[float], margin_rad: float, con
             raise LimitError(message, OutOfRange(name, angle_rad, "rad", low_rad, high_rad, margin_rad))
 
 
+def refuse_short(name: str, way_rad: float, least_rad: float, why: str) -> None:
+    """Raise `LimitError` for a way that is too short to tell anything; `why` says what the least is."""
+    if way_rad < least_rad:
+        message = quantity_message(name, way_rad, f"at least {least_rad:.3g}", "rad", why=why)
+        raise LimitError(message, OutOfRange(name, way_rad, "rad", low=least_rad))
+
+
 def refuse_speed(name: str, speed_rad_s: float, configuration: BenchConfiguration) -> None:
     """Raise `LimitError` for a speed above the limit."""
     limit_rad_s = configuration.limits.speed_rad_s

@@ -15,6 +15,7 @@ from bench.errors import LimitError, OutOfRange, quantity_message
 from bench.experiments.analysis.saturation import LEAST_READINGS, Stroke, motion_of
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.profile import SetPoint, run_up
+from bench.experiments.parts.search import STILL_COUNTS
 from drivers.contract import Command, Mode
 
 MARGIN_RAD = 0.15  # at either end, for what the servo overshoots
@@ -105,7 +106,7 @@ class Strokes:
         self._held, self._level, self._sign = held, sign * level, sign
         self._joint = Joint(configuration)
         self._period_s = configuration.control.period_s
-        self._still_rad = 1.5 * resolution_rad(configuration.rig)
+        self._still_rad = STILL_COUNTS * resolution_rad(configuration.rig)
         self._move_rad_s = configuration.motion.speed_rad_s
         self._settled_cycles = configuration.motion.settled_cycles
         self._near_rad, self._far_rad = settings.low_rad, settings.high_rad

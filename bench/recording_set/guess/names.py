@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from bench.recording_set.guess.vocabulary import DERIVED, ERROR, JOINT_SIDE, MEASURED, OTHER_AXIS, SENSOR, TARGET, WORDS
-from bench.recording_set.units import Unit, unit_named
+from bench.recording_set.units import ENDINGS, Unit, unit_named
 from compensator.lab.recordings.recording import CHANNELS
 
 _BRACKET = re.compile(r"^(?P<base>.*?)\s*[\[({<](?P<unit>[^\])}>]*)[\])}>]\s*$")
@@ -22,25 +22,7 @@ UNITS_OF = {
     "current_command": ("A",), "voltage": ("V",), "supply": ("V",), "duty": ("1",), "torque": ("N m",),
     "load_torque": ("N m",), "force": ("N",), "temperature": ("degC",), "enabled": ("1",),
 }  # fmt: skip
-_OF_CHANNEL = {
-    "time_s": "time",
-    "current_a": "current",
-    "current_command_a": "current_command",
-    "voltage_v": "voltage",
-    "supply_v": "supply",
-    "duty": "duty",
-    "torque_n_m": "torque",
-    "load_torque_n_m": "load_torque",
-    "force_n": "force",
-    "temperature_c": "temperature",
-    "enabled": "enabled",
-    "target_rad": "target",
-    "target_m": "target",
-    "position_rad": "position",
-    "position_m": "position",
-    "velocity_rad_s": "velocity",
-    "velocity_m_s": "velocity",
-}
+_OF_CHANNEL = {f"{quantity}{ENDINGS[si]}": quantity for quantity, units in UNITS_OF.items() for si in units}
 
 
 @dataclass(frozen=True)

@@ -6,18 +6,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from bench.recording_set.text.dialect import BLANKS
+from bench.recording_set.text.stamps import BadCell
 from compensator.lab.recordings.recording import FloatArray
 
 NOTHING = ("", "na", "n/a", "#n/a", "null", "none", "-", "--", "---")  # a value that is not known
 
 
-class NoNumber(ValueError):
+class NoNumber(BadCell):
     """A cell that is no number."""
-
-    def __init__(self, index: int, text: str) -> None:
-        super().__init__(text)
-        self.index = index
-        self.text = text
 
 
 def matrix(text: str, width: int, delimiter: str, decimal: str) -> FloatArray | None:

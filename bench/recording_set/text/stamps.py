@@ -18,13 +18,17 @@ _DAY_S = 86400.0
 LONGEST = 64  # characters: more is no date or time, and would be looked at for long
 
 
-class NoStamp(ValueError):
-    """A cell that is no date or time."""
+class BadCell(ValueError):
+    """A cell that is not what its column is read as."""
 
     def __init__(self, index: int, text: str) -> None:
         super().__init__(text)
         self.index = index
         self.text = text
+
+
+class NoStamp(BadCell):
+    """A cell that is no date or time."""
 
 
 def seconds_of(cells: Sequence[str]) -> FloatArray:

@@ -5,7 +5,7 @@ import { liveJoint } from "../joint/livejoint.js";
 import { Chart } from "../plots/chart.js";
 import { h, replace } from "../ui/dom.js";
 import { axisTitle, fixed, nameOf, number } from "../ui/format.js";
-import { shownUnit } from "../ui/units.js";
+import { allShown, shownUnit } from "../ui/units.js";
 import { LatestTrials } from "./latesttrials.js";
 import { around, HALF, LOAD, loadBands, newest } from "./load.js";
 import { markLegend, marksOf } from "../plots/marks.js";
@@ -105,7 +105,7 @@ function contentOf(rows, chosen, marks, seconds) {
   const measured = chosen.filter((one) => rows.column(one.name)?.some(Number.isFinite));
   const units = [...new Set(measured.map((one) => one.unit))];
   const last = all.at(-1) ?? 0;
-  const lines = measured.map((one) => ({ row: units.indexOf(one.unit), name: one.text, x: all, y: scaled(rows.column(one.name), one.unit), colour: one.colour, dash: one.dash, width: one.width }));
+  const lines = measured.map((one) => ({ row: units.indexOf(one.unit), name: one.text, x: all, y: allShown(rows.column(one.name), one.unit), colour: one.colour, dash: one.dash, width: one.width }));
   const load = measured.find((one) => one.name === LOAD);
   const bands = load && rows.column(HALF) ? [around(units.indexOf(load.unit), all, rows.column(LOAD), rows.column(HALF), load.colour)] : [];
   return {
@@ -113,12 +113,6 @@ function contentOf(rows, chosen, marks, seconds) {
     marks: marks.filter((one) => one.letter && one.x <= last), xTitle: "time in the trial [s]",
     limits: seconds && all.length ? [Math.max(all[0], last - seconds), last] : undefined,
   };
-}
-
-// a view where nothing is to be converted, a copy where it is
-function scaled(values, unit) {
-  const { factor } = shownUnit(unit);
-  return factor === 1 ? values : values.map((value) => factor * value);
 }
 
 function sentence(run) {

@@ -1,7 +1,7 @@
 // The joint of a step: where the motor may bring the arm, where a hand is to bring it, and where it is while it moves.
 
 import { JointDrawing } from "../joint/drawing.js";
-import { rowOf } from "../joint/livejoint.js";
+import { eachFrame, rowOf } from "../joint/livejoint.js";
 
 // the questions that ask for the arm to be somewhere: angle of the target
 const BY_HAND = { down: 0, hand_angle_deg: Math.PI / 2, clear: 0 };
@@ -12,30 +12,18 @@ export function isPowered(step) {
 
 export function stepDrawing(place, { live, state }) {
   const drawing = new JointDrawing(place, { label: "The joint of this step" });
-  let [target, powered, pending] = [NaN, false, false];
-  const draw = () => {
-    pending = false;
+  let [target, powered] = [NaN, false];
+  const { soon, leave } = eachFrame({ live, state }, () => {
     const row = rowOf(live, state.now);
     // between motions nobody measures: the arm is drawn where the hand is to bring it
     if (state.now.running) drawing.show(row);
     else drawing.show({ position_rad: powered ? row.position_rad : NaN, target_rad: target, current_a: NaN, dimmed: true });
-  };
-  const soon = () => {
-    if (pending || document.hidden) return;
-    pending = true;
-    requestAnimationFrame(draw);
-  };
-  live.addEventListener("rows", soon);
-  state.addEventListener("change", soon);
+  });
   const show = (step, question) => {
     powered = isPowered(step);
     target = BY_HAND[question?.key] ?? NaN;
     drawing.rig({ position_min_rad: step.low_rad, position_max_rad: step.high_rad });
     soon();
-  };
-  const leave = () => {
-    live.removeEventListener("rows", soon);
-    state.removeEventListener("change", soon);
   };
   return { show, leave };
 }

@@ -6,27 +6,34 @@ import { JointDrawing } from "./drawing.js";
 export function liveJoint(place, { live, state }, latest = null) {
   const drawing = new JointDrawing(place);
   const known = get("/bench").then((bench) => drawing.rig(rigOf(bench)), () => {});
-  let pending = false;
-  const draw = () => {
-    pending = false;
-    drawing.show(rowOf(live, state.now));
-  };
-  // once a frame, however often rows come
-  const show = () => {
-    if (pending || document.hidden) return;
-    pending = true;
-    requestAnimationFrame(draw);
-  };
+  const frames = eachFrame({ live, state }, () => drawing.show(rowOf(live, state.now)));
   const load = () => known.then(() => drawing.rig({ load_kg: latest.trials.at(-1)?.conditions.load_kg }));
-  live.addEventListener("rows", show);
-  state.addEventListener("change", show);
   latest?.addEventListener("change", load);
-  show();
+  frames.soon();
   return () => {
-    live.removeEventListener("rows", show);
-    state.removeEventListener("change", show);
+    frames.leave();
     latest?.removeEventListener("change", load);
   };
+}
+
+// draws once a frame, however often rows come; soon(): draw anew, leave(): no more
+export function eachFrame({ live, state }, draw) {
+  let pending = false;
+  const soon = () => {
+    if (pending || document.hidden) return;
+    pending = true;
+    requestAnimationFrame(() => {
+      pending = false;
+      draw();
+    });
+  };
+  live.addEventListener("rows", soon);
+  state.addEventListener("change", soon);
+  const leave = () => {
+    live.removeEventListener("rows", soon);
+    state.removeEventListener("change", soon);
+  };
+  return { soon, leave };
 }
 
 // what the drawing needs of GET /bench

@@ -3,7 +3,7 @@
 import { readingNote } from "../app/state.js";
 import { newest } from "../bench/load.js";
 import { currentName, readingText } from "../bench/liveplot.js";
-import { liveJoint, rowOf } from "../joint/livejoint.js";
+import { eachFrame, liveJoint, rowOf } from "../joint/livejoint.js";
 import { h, replace } from "../ui/dom.js";
 import { duration } from "../ui/format.js";
 
@@ -17,9 +17,7 @@ export function numbersView(place, { live, state }) {
   const stop = h("button", { type: "button", class: "stop numbers-stop", onclick: () => document.getElementById("stop").click() }, "STOP");
   replace(place, h("section", { class: "numbers" }, doing, h("div", { class: "numbers-body" }, joint,
     h("dl", { class: "numbers-values" }, [angle, current, load, left].map(({ element }) => element))), note, stop));
-  let pending = false;
   const show = () => {
-    pending = false;
     const now = state.now;
     const { status } = now;
     const row = rowOf(live, now);
@@ -35,21 +33,13 @@ export function numbersView(place, { live, state }) {
     place.classList.toggle("dimmed", dimmed);
     note.textContent = aged || "\u00a0";
   };
-  // once a frame, however often rows come
-  const soon = () => {
-    if (pending || document.hidden) return;
-    pending = true;
-    requestAnimationFrame(show);
-  };
-  live.addEventListener("rows", soon);
-  state.addEventListener("change", soon);
+  const { leave } = eachFrame({ live, state }, show);
   const leaveJoint = liveJoint(joint, { live, state });
   show();
   return () => {
     place.classList.remove("dimmed");
     leaveJoint();
-    live.removeEventListener("rows", soon);
-    state.removeEventListener("change", soon);
+    leave();
   };
 }
 

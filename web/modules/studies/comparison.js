@@ -7,7 +7,7 @@ import { closedLoop } from "./closedloop.js";
 import { facts, h, panel, replace, table } from "../ui/dom.js";
 import { errorMap, momentList } from "./errormap.js";
 import { conditions, nameOf, number, percent } from "../ui/format.js";
-import { milli, shownUnit } from "../ui/units.js";
+import { allShown, milli, shownUnit, titled } from "../ui/units.js";
 
 const DIRECTIONS = { forward: "blue", backward: "red", both: "green" };
 
@@ -56,13 +56,12 @@ function errors({ error, effort }) {
 
 // a line for each direction, with its band; a point that is chosen leads to its moments
 function driverPlot(place, driver, { effort, linked, ask }) {
-  const { unit, factor } = shownUnit(driver.unit);
   const chart = new Chart(place, { label: `Residual against ${nameOf(driver.driver)}`, height: 250, moves: false });
   const small = milli(Math.max(...driver.groups.flatMap((group) => [...group.low, ...group.high]).map(Math.abs)), effort.unit);
   const scaled = (values) => values.map((value) => small.factor * value);
   const shown = driver.groups.map((group) => ({ mean: scaled(group.mean), low: scaled(group.low), high: scaled(group.high), direction: group.direction,
-    colour: DIRECTIONS[group.direction] ?? "blue", x: group.x.map((value) => factor * value) }));
-  chart.show({ rows: [{ title: `residual [${small.unit}]` }], xTitle: `${nameOf(driver.driver)}${unit ? ` [${unit}]` : ""}`,
+    colour: DIRECTIONS[group.direction] ?? "blue", x: allShown(group.x, driver.unit) }));
+  chart.show({ rows: [{ title: `residual [${small.unit}]` }], xTitle: titled(nameOf(driver.driver), driver.unit),
     lines: shown.map((group) => ({ row: 0, name: group.direction, x: group.x, y: group.mean, colour: group.colour, dots: true, dash: group.direction === "backward" ? [6, 4] : undefined })),
     bands: shown.map((group) => ({ row: 0, x: group.x, low: group.low, high: group.high, colour: group.colour })) });
   chart.addEventListener("choose", () => ask(...spotOf(driver, chart.chosen)));

@@ -5,7 +5,7 @@ import { attempt } from "../ui/attempt.js";
 import { bar } from "./beforeafter.js";
 import { h, replace } from "../ui/dom.js";
 import { capital, chance as chanceIs, interval, nameOf, number, percent, spoken } from "../ui/format.js";
-import { milli, shownUnit } from "../ui/units.js";
+import { allShown, milli, titled } from "../ui/units.js";
 import { Chart } from "../plots/chart.js";
 import { momentList } from "./errormap.js";
 
@@ -127,14 +127,13 @@ function ends({ gain, gain_low: low, gain_high: high }) {
 
 // the residual, each bin's mean with its band, and the curve of the effect over it
 function picture(place, { picture: shown, title }, effort) {
-  const { unit, factor } = shownUnit(shown.unit);
   const small = milli(Math.max(...[...shown.low, ...shown.high, ...shown.curve].map(Math.abs)), effort.unit);
   const scaled = (values) => values.map((value) => small.factor * value);
-  const x = shown.x.map((value) => factor * value);
+  const x = allShown(shown.x, shown.unit);
   const chart = new Chart(place, { label: `Residual against ${nameOf(shown.driver)} with the curve of ${title}`, height: 230, moves: false });
-  chart.show({ rows: [{ title: `residual${shown.against_motion ? " against motion" : ""} [${small.unit}]` }], xTitle: `${nameOf(shown.driver)}${unit ? ` [${unit}]` : ""}`,
+  chart.show({ rows: [{ title: `residual${shown.against_motion ? " against motion" : ""} [${small.unit}]` }], xTitle: titled(nameOf(shown.driver), shown.unit),
     bands: [{ row: 0, x, low: scaled(shown.low), high: scaled(shown.high), colour: "blue" }],
     lines: [{ row: 0, name: "residual", x, y: scaled(shown.residual), colour: "blue", dots: true, bare: true },
-      { row: 0, name: title, x: shown.curve_x.map((value) => factor * value), y: scaled(shown.curve), colour: "red", width: 3 }] });
+      { row: 0, name: title, x: allShown(shown.curve_x, shown.unit), y: scaled(shown.curve), colour: "red", width: 3 }] });
   return chart;
 }

@@ -4,7 +4,7 @@
 
 import { h, replace, table } from "../ui/dom.js";
 import { nameOf, number } from "../ui/format.js";
-import { milli, shownUnit } from "../ui/units.js";
+import { milli, shownUnit, titled } from "../ui/units.js";
 
 const DARKEST_PERCENT = 45;
 
@@ -21,7 +21,7 @@ export function errorMap(place, map, ask, linked) {
     for (const [down, row] of rows.entries()) for (const [across, one] of [...row.querySelectorAll("td")].entries()) one.classList.toggle("here", Boolean(at) && down === at[0] && across === at[1]);
   });
   replace(place,
-    h("p", { class: "soft" }, `Root mean square of the residual [${effort.unit}]: across over ${titleOf(map.across)}, down over ${titleOf(map.down)}. Choose a cell to see the worst of its moments.`),
+    h("p", { class: "soft" }, `Root mean square of the residual [${effort.unit}]: across over ${titled(nameOf(map.across.title), map.across.unit)}, down over ${titled(nameOf(map.down.title), map.down.unit)}. Choose a cell to see the worst of its moments.`),
     h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Error over speed and load" },
       h("table", { class: "heat" }, h("thead", {}, head), h("tbody", {}, [...rows].reverse()))));
 }
@@ -49,10 +49,6 @@ function cell(map, { down, across, value, highest, effort }, { ask, linked }) {
 
 function middles(edges) {
   return edges.slice(1).map((edge, index) => (edge + edges[index]) / 2);
-}
-
-function titleOf({ title, unit }) {
-  return unit ? `${nameOf(title)} [${shownUnit(unit).unit}]` : nameOf(title);
 }
 
 function spanOf({ title, unit: si }, low, high) {

@@ -5,13 +5,14 @@ import { h, replace, table } from "../ui/dom.js";
 import { interval, number, percent } from "../ui/format.js";
 import { colour } from "../ui/colours.js";
 import { draw } from "../plots/plotly.js";
+import { floorOf } from "./verdict.js";
 
 const AXIS_PX = 72; // what the axis at the left takes
 const WORD_PX = 76; // of the longest words of effects
 
 export function ladderPlot(place, ladder, current) {
   const plot = h("div", { class: "plot ladder", role: "figure", "aria-label": "Error of each model; the table below holds the numbers" });
-  const floor = floorValue(ladder.floor);
+  const floor = floorOf(ladder.floor);
   replace(place, plot, rungTable(ladder, current),
     floor !== null && h("p", { class: "soft" }, `Floor: repeated trials differ by ${percent(floor)} among themselves, as far as the best model can tell. Only an effect with memory can go below.`));
   const names = ladder.rungs.map(rungName);
@@ -49,11 +50,6 @@ function spread(rungs) {
   if (rungs.some((rung) => rung.held_out_low === null || rung.held_out_low === undefined)) return undefined;
   return { type: "data", symmetric: false, array: rungs.map((rung) => 100 * Math.max(0, rung.held_out_high - rung.held_out)),
     arrayminus: rungs.map((rung) => 100 * Math.max(0, rung.held_out - rung.held_out_low)), color: colour("blue"), thickness: 1.5 };
-}
-
-function floorValue(floor) {
-  if (floor === null || floor === undefined) return null;
-  return typeof floor === "number" ? floor : floor.relative;
 }
 
 function rungTable(ladder, current) {

@@ -3,7 +3,7 @@
 
 import { get } from "../app/api.js";
 import { firstFrom } from "../plots/thin.js";
-import { shownUnit } from "../ui/units.js";
+import { allShown } from "../ui/units.js";
 
 const NEAR = 0.02; // of what a driver's plot spans, on both sides of the pointer
 
@@ -29,7 +29,7 @@ export class Linked {
       const source = x === null ? null : await this.#drivers();
       if (x !== chart.cursor) return;
       const driver = named(source, name);
-      this.series.brush(driver ? stretches(source.time_s, ofDriver(driver).map((value) => Math.abs(value - x) <= near)) : []);
+      this.series.brush(driver ? stretches(source.time_s, allShown(driver.values, driver.unit).map((value) => Math.abs(value - x) <= near)) : []);
     });
   }
 
@@ -69,7 +69,7 @@ export class Linked {
     const index = source && Math.min(firstFrom(source.time_s, time_s), source.time_s.length - 1);
     for (const { chart, name } of this.#over) {
       const driver = named(source, name);
-      chart.cursor = driver ? ofDriver(driver)[index] : null;
+      chart.cursor = driver ? allShown(driver.values, driver.unit)[index] : null;
     }
     for (const { chart, trial_id } of this.#timed) if (chart !== from) chart.cursor = trial_id() === this.series.trial_id ? time_s : null;
     const values = source && Object.fromEntries(source.drivers.map((one) => [one.driver, one.values[index]]));
@@ -85,11 +85,6 @@ export class Linked {
 
 function named(source, name) {
   return source?.drivers.find((one) => one.driver === name || one.title === name);
-}
-
-function ofDriver({ values, unit }) {
-  const { factor } = shownUnit(unit);
-  return factor === 1 ? values : values.map((value) => factor * value);
 }
 
 // where it is true: [{from, to}] in the time of rising time_s

@@ -6,6 +6,9 @@ import { chanceCell, fixed, interval, number, percent } from "../ui/format.js";
 const FEW = 3;
 const MOST_PLACES = 8;
 
+// the column that says which it is, and of which effect
+export const PARAMETER = { title: "Parameter", cell: (one) => [one.name.replaceAll("_", " "), h("div", { class: "hint" }, one.effect.replaceAll("_", " "))] };
+
 export function parameterTables(compared) {
   return [parameterTable(compared), ...breakawayTable(compared), ...restTable(compared)];
 }
@@ -29,7 +32,7 @@ function breakawayTable({ breakaway }) {
 
 function parameterTable({ parameters }, title = "Parameters") {
   return table(title, [
-    { title: "Parameter", cell: (one) => [one.name.replaceAll("_", " "), h("div", { class: "hint" }, one.effect.replaceAll("_", " "))] },
+    PARAMETER,
     { title: "Value (95 %)", number: true, cell: (one) => written(one) },
     { title: "Unit", cell: (one) => unitText(one.unit) },
     { title: "Note", cell: (one) => one.note },

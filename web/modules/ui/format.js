@@ -1,6 +1,6 @@
 // Numbers, units and names as people read them.
 
-import { shownUnit, withShownUnit } from "./units.js";
+import { shownUnit, titled, withShownUnit } from "./units.js";
 
 const UNITS = [
   ["_rad_s", "rad/s"], ["_m_s", "m/s"], ["_n_m", "N m"], ["_kg", "kg"], ["_rad", "rad"], ["_deg", "°"], ["_hz", "Hz"], ["_ms", "ms"],
@@ -30,8 +30,7 @@ export function axisTitle(si, other = "") {
 }
 
 export function withUnit(name) {
-  const { unit } = shownUnit(unitOf(name));
-  return unit ? `${nameOf(name)} [${unit}]` : nameOf(name);
+  return titled(nameOf(name), unitOf(name));
 }
 
 // to be read; what is typed and read back is `plain`

@@ -20,7 +20,14 @@ export function shownUnit(si) {
 
 // what an axis, a column or a field is called, with the unit that is shown: "load [g]"
 export function titled(text, si) {
-  return `${text} [${shownUnit(si).unit}]`;
+  const { unit } = shownUnit(si);
+  return unit ? `${text} [${unit}]` : text;
+}
+
+// values as they are shown: the same where nothing is to be converted, a copy where it is
+export function allShown(values, si) {
+  const { factor } = shownUnit(si);
+  return factor === 1 ? values : values.map((value) => factor * value);
 }
 
 // a value without the noise of its conversion: 1.57079632679 rad are 90°, not 89.99999999

@@ -3,7 +3,7 @@
 import { note } from "../app/address.js";
 import { get } from "../app/api.js";
 import { rungName } from "../studies/ladder.js";
-import { unitText, writerOf } from "../studies/parameters.js";
+import { PARAMETER, unitText, writerOf } from "../studies/parameters.js";
 import { SeriesPlot } from "../studies/seriesplot.js";
 import { attempt, patiently, together } from "../ui/attempt.js";
 import { h, panel, replace, table } from "../ui/dom.js";
@@ -123,7 +123,7 @@ function parameterTable(first, second) {
     return [show(found.value), found.low !== null && h("div", { class: "hint" }, `${show(found.low)} to ${show(found.high)}`)].filter(Boolean);
   };
   return table("Parameters of both models, with 95 % intervals", [
-    { title: "Parameter", cell: (one) => [one.name.replaceAll("_", " "), h("div", { class: "hint" }, one.effect.replaceAll("_", " "))] },
+    PARAMETER,
     { title: "Unit", cell: (one) => unitText(one.unit) },
     { title: "First", number: true, cell: value(first) },
     { title: "Second", number: true, cell: value(second) },
