@@ -1,6 +1,7 @@
 """Units by the names that people give them, and their factors to SI."""
 
 import math
+import re
 from dataclasses import dataclass
 
 from bench.config import quantities
@@ -79,8 +80,9 @@ _COUNTS = "counts count cts inc ticks tick increments inkremente pulses steps ls
 
 def _spelt(text: str) -> str:
     """A unit as it is looked up: without blanks, dots and underscores; in lower case."""
-    for sign, plain in (("µ", "u"), ("μ", "u"), ("°", "deg"), ("º", "deg"), ("⁻¹", "-1"), ("per", "/")):
+    for sign, plain in (("µ", "u"), ("μ", "u"), ("°", "deg"), ("º", "deg"), ("⁻¹", "-1")):
         text = text.replace(sign, plain)
+    text = re.sub("per(?!cent)", "/", text)
     if text.endswith("_s") and not text.startswith("_"):
         text = text.removesuffix("_s") + "/s"
     for sign in " ·⋅*._^":

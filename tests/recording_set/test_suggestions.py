@@ -5,7 +5,7 @@ import pytest
 from bench.recording_set import Mapping
 from bench.recording_set.text.suggestions import _UNITS, suggestion
 from bench.recording_set.text.toml_file import parse_toml
-from bench.recording_set.units import ENDINGS
+from bench.recording_set.units import ENDINGS, unit_named
 from compensator.lab.recordings.recording import CHANNELS
 
 
@@ -42,3 +42,20 @@ def test_far_names_suggest_nothing() -> None:
 def test_every_unit_leads_to_a_unit_of_a_channel() -> None:
     endings = {ENDINGS[unit.si] for unit in _UNITS.values()}
     assert all(any(name.endswith(ending) for name in CHANNELS) for ending in endings)
+
+
+@pytest.mark.parametrize(
+    ("said", "name"),
+    [
+        ("percent", "%"),
+        ("pct", "%"),
+        ("rad per s", "rad/s"),
+        ("permille", "permille"),
+        ("U/min", "rpm"),
+        ("°/s", "deg/s"),
+    ],
+)
+def test_a_unit_has_the_names_that_people_give_it(said, name):
+    found = unit_named(said)
+    assert found is not None
+    assert found.name == name
