@@ -70,6 +70,6 @@ def test_the_python_example(bench, service, study, capsys):
     assert isinstance(channels, dict)
     assert len(channels["time_s"]) > 100
     shown = capsys.readouterr().out
-    assert "steps: completed" in shown
+    assert "excitation: completed" in shown
     assert "missing" in shown or "nothing" in shown.lower()
     names["bench"].close()  # type: ignore[attr-defined]

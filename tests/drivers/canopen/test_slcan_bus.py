@@ -47,6 +47,11 @@ def _written(end: int, last: bytes) -> bytes:
     pytest.fail(f"{last!r} was not written; {heard!r} was")
 
 
+def _last_line(end: int, last: bytes) -> bytes:
+    """The whole last line; the channel is opened twice, and the second time may be heard late."""
+    return _written(end, last).split(b"\r")[-2]
+
+
 def test_the_channel_is_opened_at_its_bit_rate(adapter, bus):
     lines = _written(adapter[0], b"O").split(b"\r")
     assert lines.index(b"C") < lines.index(b"S8") < len(lines) - 1 - lines[::-1].index(b"O")
@@ -55,9 +60,9 @@ def test_the_channel_is_opened_at_its_bit_rate(adapter, bus):
 def test_frames_are_lines(adapter, bus):
     _written(adapter[0], b"O")
     bus.send(can.Message(arbitration_id=0x205, data=bytes.fromhex("0f0038ff"), is_extended_id=False))
-    assert _written(adapter[0], b"t20540F0038FF") == b"t20540F0038FF\r"
+    assert _last_line(adapter[0], b"t20540F0038FF") == b"t20540F0038FF"
     bus.send(can.Message(arbitration_id=0x80, data=b"", is_extended_id=False))
-    assert _written(adapter[0], b"t0800") == b"t0800\r"
+    assert _last_line(adapter[0], b"t0800") == b"t0800"
 
 
 def test_frames_come_one_by_one_however_the_line_is_cut(adapter, bus):

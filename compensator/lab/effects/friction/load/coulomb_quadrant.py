@@ -3,13 +3,14 @@
 import numpy as np
 
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
-from compensator.lab.effects.friction.load.load_friction import UNCERTAIN_SHARE
 from compensator.lab.recordings.recording import FloatArray
+
+FLANK_SHARE = 0.01  # of the largest effort, over which flanks change: loads are known about so well
 
 
 def columns(motion: Motion, _: Shape) -> FloatArray:
     """The flank that carries the load, while moving; and the same against the motion."""
-    side = np.tanh(motion.load_effort / (UNCERTAIN_SHARE * (motion.largest_effort or 1.0)))
+    side = np.tanh(motion.load_effort / (FLANK_SHARE * (motion.largest_effort or 1.0)))
     return np.array([side * np.abs(motion.direction), side * motion.direction])
 
 
