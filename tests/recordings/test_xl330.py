@@ -10,7 +10,7 @@ def test_load_dependent_friction_is_named_and_halves_the_error_and_the_search_st
     made = command("study", "new", "xl330", "--experiment", command.import_set("xl330"))
     study_id, named, changes = made["study_id"], [], []
     assert made["effort"]["unit"] == "V"
-    for _ in range(4):
+    for _ in range(6):
         diagnosis = command("study", "diagnose", study_id)
         if diagnosis["verdict"] != "missing":
             break

@@ -104,7 +104,10 @@ def _between_stretches(gathered: Candidates, candidate: Candidate, left: FloatAr
 
 
 def _block(gathered: Candidates, candidate: Candidate) -> Block:
-    return next(one for one in gathered.named if one.name == candidate.effect.name and one.shape == candidate.shape)
+    """The columns of a candidate at its own shape, which is fitted, and need not be one of those that are scanned."""
+    scanned = next(one for one in gathered.named if one.name == candidate.effect.name)
+    columns = gathered.fit.dataset.unchecked_columns(candidate.effect, [candidate.shape])[0]
+    return replace(scanned, columns=gathered.tested(columns), shape=candidate.shape)
 
 
 def _left_by_best(gathered: Candidates, candidate: Candidate) -> FloatArray:

@@ -62,11 +62,10 @@ def _separation(fit: Fit, rivals: list[Candidate]) -> Rivalry:
         return BreakawaySeparation(fit, rivals)
     wide = fit.dataset.choice_for([one.effect for one in rivals])
     gathered = gather(widened(fit, wide) if wide != fit.dataset.rows else fit, show_in)
-    known = {(block.name, block.shape) for block in gathered.named}
-    rivals = [one for one in rivals if (one.effect.name, one.shape) in known]
-    named = {one.effect.name for one in rivals}
-    of_one_kind = [name for name, _ in known if effect_named(name).pipeline == rivals[0].effect.pipeline]
-    return Separation(gathered, rivals, sorted({*of_one_kind} - named))
+    known = {block.name for block in gathered.named}
+    named = [one for one in rivals if one.effect.name in known] or rivals[:1]
+    of_one_kind = {name for name in known if effect_named(name).pipeline == named[0].effect.pipeline}
+    return Separation(gathered, named, sorted(of_one_kind - {one.effect.name for one in named}))
 
 
 def _pairs(separation: Rivalry, diagnosis: Diagnosis) -> list[tuple[int, int | None]]:

@@ -123,8 +123,8 @@ def smoothed(m: Motion, time_constant_s: float) -> np.ndarray:
 
 
 def flank(m: Motion) -> np.ndarray:
-    """Which flank carries the load, unsure below a twentieth of the largest effort."""
-    return np.tanh((1.3 * np.sin(m.position) - 0.2) / (0.05 * 1.5))
+    """Which flank carries the load, unsure below a hundredth of the largest effort."""
+    return np.tanh((1.3 * np.sin(m.position) - 0.2) / (0.01 * 1.5))
 
 
 # one row per parameter, from the equation in the effect's file; shape values in its order

@@ -12,7 +12,7 @@ from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import fit_model
 from compensator.lab.next_trial.confounded import shows_from_rest
 from compensator.lab.next_trial.separation import Separation
-from compensator.lab.next_trial.suggest import SURE, suggest
+from compensator.lab.next_trial.suggest import SURE, d_prime_of, suggest
 from compensator.lab.next_trial.suggestion import Option
 from compensator.lab.rows.assembly import make_dataset, more_trials
 from compensator.lab.rows.dataset import Processing
@@ -238,3 +238,15 @@ def test_an_option_may_be_suggested_more_often_than_there_are_options(fit, diagn
     suggested = suggest(fit, diagnosis, [one], most=3)
     assert [pick.name for pick in suggested.picks] == [one.name] * 3
     assert all(pair.by_chance == pytest.approx(pair.after) for pair in suggested.pairs)  # there is nothing else to draw
+
+
+def test_a_rival_of_a_shape_that_is_not_scanned_is_separated_at_that_shape():
+    """A diagnosis finds all shapes anew: none of them need be one of those that are scanned."""
+    made = recordings(Joint(extra=lambda x: 0.02 * np.sin(3.3 * x.q)), seed=4)
+    fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
+    found = diagnose(fit)
+    between = replace(found.candidates[0], shape=(3.3,))
+    assert between.effect.name == "cogging"
+    assert (3.3,) not in between.effect.shapes(fit.dataset.trials[0].motion)
+    assert Separation(gather(fit), [between]).rivals[0].shape == (3.3,)
+    assert d_prime_of(fit, replace(found, candidates=[between]), "cogging") > SURE
