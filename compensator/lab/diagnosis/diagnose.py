@@ -28,6 +28,7 @@ from compensator.lab.left_over.orders import with_found_order
 from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
+from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import least_p_value
 from compensator.lab.screening.gathering import gather, with_noise
 
@@ -62,7 +63,7 @@ def diagnose(fit: Fit) -> Diagnosis:
     if alien is not None and not explained and (alien.mended or not too_short):
         return _data_problem(fit, alien.text)
     others = [answer for answer in families.in_order if answer is not first]
-    left = _left_in_sliding(first) if first is families.memory else []
+    left = _left_in_sliding(first, families.gathered) if first is families.memory else []
     rest = compare_at_rest(fit)
     at_rest = [] if rest is None or not rest.is_evidence else [_at_rest(rest, fit.dataset.effort_definition.unit)]
     # what sliding leaves no room for, rest may: static friction beyond the model's is something that is missing
@@ -139,11 +140,11 @@ def _by_run(fit: Fit) -> list[Note]:
     return [_differs_by_run(one, unit) for one in differences_by_run(fit, held_out(fit))]
 
 
-def _left_in_sliding(memory: Answer) -> list[Note]:
+def _left_in_sliding(memory: Answer, sliding: Candidates) -> list[Note]:
     """What an effect with memory that is named leaves in steady sliding: near reversals not all of it is asked for."""
     if memory.explained is None or memory.remains:
         return []
-    return what_remains(memory.explained, "sliding", memory.candidates[0].effect.name)
+    return what_remains(memory.explained, sliding, memory.candidates[0].effect.name)
 
 
 def _once(candidates: list[Candidate]) -> list[Candidate]:

@@ -96,7 +96,7 @@ class _Family:
         if shadow_of := self._shadow_of(candidate.evidence):
             return f"explains little beside {shadow_of}, which cannot be it"
         others = [one for one in self.examined if one is not candidate]
-        notes = what_remains(candidate.explained, self.gathered.show_in, candidate.effect.name)
+        notes = what_remains(candidate.explained, self.gathered, candidate.effect.name)
         sentence = missing_in_words(candidate, chance) + (partly_in_words(candidate) if notes else "")
         return Answer("missing", sentence, chance, [candidate, *others], None, notes, bool(notes), self.gathered)
 

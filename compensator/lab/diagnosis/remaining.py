@@ -1,8 +1,9 @@
 """What no name explains: beside a plain model, or beside a name that is right only in part."""
 
+import numpy as np
+
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.note import Note, Value
-from compensator.lab.effects.effect import MotionRows
 from compensator.lab.effects.free_curve import AGAINST_MOTION, FORCE, TIMES_SPEED, way_of
 from compensator.lab.left_over.left_over import LeftOver, left_over, unexplained_in_words
 from compensator.lab.left_over.orders import recurring_in_words
@@ -33,13 +34,20 @@ def without_a_name(gathered: Candidates, generic: Screening) -> str | None:
     return unexplained_in_words(left, driver, gathered.stretches, facts, wanders)
 
 
-def what_remains(fit: Fit, show_in: MotionRows, name: str) -> list[Note]:
-    """What remains with the effect in the model, beside what its formula leaves open, as the next step sees it."""
-    grown = gather_curves(fit, show_in)
+def what_remains(fit: Fit, before: Candidates, name: str) -> list[Note]:
+    """What remains with the effect in the model, beside what its formula leaves open, as the next step sees it.
+
+    Args:
+        fit: the model with the effect.
+        before: what it was missing without, on the same rows, and the noise.
+        name: of the effect.
+    """
+    grown = gather_curves(fit, before.show_in)
     left = left_over(grown)
     if not left.is_more_than_noise:
         return []
-    white = with_noise(grown)
+    known = before.noise if np.array_equal(grown.rows, before.rows) else None
+    white = with_noise(grown) if known is None else grown.whitened(known)
     rest = white.screened(white.curves.blocks)
     if rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
         variable, way = way_of(rest.evidence[0].block.name)

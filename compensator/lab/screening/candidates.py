@@ -41,7 +41,11 @@ class Curves:
     @cached_property
     def blocks(self) -> list[Block]:
         """The same as blocks to be screened."""
-        return [Block(name, self._weighted(columns), 0, 1) for name, columns in self.columns.items()]
+        if not self.columns:
+            return []
+        ends = np.cumsum([one.shape[1] for one in self.columns.values()])[:-1]
+        whole = np.split(self._weighted(np.column_stack(list(self.columns.values()))), ends, axis=1)
+        return [Block(name, own, 0, 1) for name, own in zip(self.columns, whole, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -88,12 +92,16 @@ class Candidates:
 
     def whitened(self, noise: Noise) -> "Candidates":
         """The same candidates on rows whose noise is white: least squares of them are generalised ones."""
+        columns = [block.columns for block in self.named]
+        for base in self.bases:
+            columns += [base.basis, base.residual[:, None]]
+        ends = np.cumsum([one.shape[1] for one in columns])[:-1]
+        white = np.split(noise.whitened(np.column_stack(columns)), ends, axis=1)  # at once: many trials are short
+        named, bases = white[: len(self.named)], white[len(self.named) :]
         return replace(
             self,
-            bases=[
-                Base.of(noise.whitened(base.basis), noise.whitened(base.residual[:, None])[:, 0]) for base in self.bases
-            ],
-            named=[replace(block, columns=noise.whitened(block.columns)) for block in self.named],
+            bases=[Base.of(basis, residual[:, 0]) for basis, residual in zip(bases[::2], bases[1::2], strict=True)],
+            named=[replace(block, columns=own) for block, own in zip(self.named, named, strict=True)],
             curves=self.curves.whitened(noise),
             noise=noise,
             coloured=self.bases,

@@ -129,8 +129,8 @@ def with_noise(gathered: Candidates) -> Candidates:
     block = most_likely(gathered.bases, [*joint, *gathered.curves.blocks])
     left = gathered
     if block is not None:
-        colour = _noise_of(gathered, [])
-        if _pays(gathered.whitened(colour), replace(block, columns=colour.whitened(block.columns))):
+        alone = replace(gathered, named=[block]).whitened(_noise_of(gathered, []))
+        if any(item.score > 0.0 for item in alone.screened(alone.named).evidence):
             left = gathered.with_block(block)
     return gathered.whitened(_noise_of(left, _random_effects(gathered)))
 
@@ -154,8 +154,3 @@ def _random_effects(gathered: Candidates) -> list[RandomEffect]:
         *(RandomEffect(gathered.weights * share, trial) for share in shares),
         RandomEffect(gathered.weights * fit.static_friction[rows], np.asarray(stroke, dtype=np.int64).ravel()),
     ]
-
-
-def _pays(gathered: Candidates, block: Block) -> bool:
-    """Whether the evidence of whitened rows pays for a block's parameters and shapes."""
-    return any(item.score > 0.0 for item in gathered.screened([block]).evidence)

@@ -23,7 +23,7 @@ SPEEDS = 3  # kinds of rows, slow to fast, as many of each
 MODEL_ERROR = (
     0.03  # share of the variance: white, so that no frequency is thought to be free of what a model is wrong by
 )
-PASSES = 3  # of learning what a fit takes from the noise
+PASSES = 2  # of learning what a fit takes from the noise
 LONGEST = 1000  # steps of a place's grid: what is farther apart than BLOCK_S is independent
 TINY = 1e-30
 
@@ -94,8 +94,9 @@ class Noise:
             return found
 
         for effect in random:
-            learnt = replace(effect, variance=likeliest_variance(effect.columns(), left, power))
-            covariances = [(rows, one + learnt.covariance(rows)) for rows, one in covariances]
+            if variance := likeliest_variance(effect.columns(), left, power):
+                learnt = replace(effect, variance=variance)
+                covariances = [(rows, one + learnt.covariance(rows)) for rows, one in covariances]
         stretches = len(np.unique(dataset.block_index[rows]))
         roots = tuple((rows, np.linalg.cholesky(one).astype(np.float64)) for rows, one in covariances)
         return cls(max(stretches - 1, 1), roots)

@@ -15,7 +15,7 @@ from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.screening.base import Base
 
 VARIANCES = np.concatenate([[0.0], np.geomspace(1e-3, 1.0, 61) ** 2])  # of the factor: none to all of it
-MOST = 60  # groups that the variance is learnt from, those with most
+MOST = 24  # groups that the variance is learnt from, those with most
 NEGLIGIBLE = 1e-6  # share of their power: the base explains it
 
 

@@ -135,8 +135,8 @@ def test_what_an_effect_with_memory_leaves_in_steady_sliding_is_told(monkeypatch
     made = recordings(Joint(extra=late), seed=4)
     asked = []
 
-    def what_remains(fit, show_in, name):
-        asked.append((name in fit.names, show_in))
+    def what_remains(fit, before, name):
+        asked.append((name in fit.names, before.show_in))
         return left
 
     monkeypatch.setattr(diagnose_module, "what_remains", what_remains)
