@@ -20,9 +20,7 @@ from compensator.lab.screening.base import Base
 from compensator.lab.screening.random_effects import RandomEffect, likeliest_variance
 
 SPEEDS = 3  # kinds of rows, slow to fast, as many of each
-MODEL_ERROR = (
-    0.03  # share of the variance: white, so that no frequency is thought to be free of what a model is wrong by
-)
+MODEL_ERROR = 0.03  # share of the variance, white: at no frequency is a model right to less
 PASSES = 2  # of learning what a fit takes from the noise
 LONGEST = 1000  # steps of a place's grid: what is farther apart than BLOCK_S is independent
 TINY = 1e-30

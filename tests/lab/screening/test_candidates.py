@@ -1,5 +1,7 @@
 """What candidates are judged on: the model, tangents of its shapes, and what the measuring chain produces."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,8 +9,9 @@ from compensator.lab.effects.catalogue import candidates, catalogue, default_eff
 from compensator.lab.model.fit import fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening import gathering
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.gathering import gather
+from compensator.lab.screening.gathering import gather, with_noise
 from compensator.lab.screening.nuisance import NAMES, nuisance_columns
 from tests.lab.synthetic import FACTS, recordings
 
@@ -85,3 +88,28 @@ def test_columns_are_weighted_like_the_effort(gathered):
     assert base.residual == pytest.approx(effort - base.basis @ (base.basis.T @ effort))
     wider = gathered.with_block(spring)
     assert left_share(wider, gathered.fit.dataset.columns(effect_named("spring"), ())[:, 0]) < 1e-6
+
+
+def test_friction_that_differs_from_trial_to_trial_is_noise(monkeypatch):
+    """Else whatever goes with some of the trials, as their load or their warmth, would explain it."""
+    made = []
+    for one, more in zip(recordings(seed=3), np.random.default_rng(5).standard_normal(99), strict=False):
+        position, torque = one.channels["position_rad"], one.channels["torque_n_m"]
+        differs = torque + 0.02 * more * np.sign(np.gradient(position))
+        made.append(replace(one, channels={**one.channels, "torque_n_m": differs}))
+    plain = gather(fit_model(make_dataset(made, FACTS, Processing()), DEFAULT))
+    dataset, rows = plain.fit.dataset, plain.rows
+    direction = dataset.stack(trial.motion.direction[None] for trial in dataset.trials)[rows, 0]
+    trial = dataset.trial_index[rows]
+    columns = np.where(trial[:, None] == np.unique(trial), (plain.weights * direction)[:, None], 0.0)
+
+    def power() -> float:
+        """Of what is left, in the friction of each trial; 1 where it is noise as it is known."""
+        white = with_noise(plain)
+        assert white.noise is not None
+        own = white.bases[0].beyond(white.noise.whitened(columns))
+        return float(np.mean((own.T @ white.bases[0].residual) ** 2 / np.sum(own**2, axis=0)))
+
+    assert power() < 5.0
+    monkeypatch.setattr(gathering, "_random_effects", lambda _: [])
+    assert power() > 50.0

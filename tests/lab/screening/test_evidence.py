@@ -40,6 +40,15 @@ def test_false_alarms_on_noise_are_as_rare_as_they_say():
     assert np.sum(np.array(p_values) <= 0.5) >= binom.ppf(0.005, sets, 0.5)  # nor does it never alarm
 
 
+def test_of_one_block_the_chance_among_all_is_its_own():
+    """However few stretches tell the noise: that is in the chance of the block, and in that among all."""
+    bases, blocks = problem(7)
+    found = screen(bases, blocks[:1], 5)
+    assert found.chance is not None
+    for own in (0.02, 0.1, 0.5):
+        assert found.chance(own) == pytest.approx(own, rel=0.15)
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_a_planted_column_is_found_and_named(seed):
     found = screened(*problem(seed, planted=0.25))

@@ -185,6 +185,20 @@ def test_slow_rows_have_noise_of_a_colour_of_their_own():
     assert np.mean(found, axis=0)[0] > 3.0 * np.mean(found, axis=0)[1]
 
 
+def test_rows_of_any_speed_share_one_source_of_noise():
+    """Slow noise goes on where the speed changes: a slow direction over rows of all speeds has all of it."""
+    random = np.random.default_rng(12)
+    speeds = [random.choice([0.1, 1.0, 3.0], ROWS) for _ in range(TRIALS)]
+    slow = np.tile(np.sin(np.linspace(0.0, np.pi, ROWS)), TRIALS)[:, None]
+    slow /= np.linalg.norm(slow)
+    shares = [float((slow.T @ coloured(random, 0.9))[0]) for _ in range(400)]
+    found = [
+        covariance(Noise.learnt(dataset(speeds), ALL, Base(NOTHING, coloured(random, 0.9))), slow)[0, 0]
+        for _ in range(8)
+    ]
+    assert np.mean(found) == pytest.approx(np.var(shares), rel=0.35)
+
+
 @pytest.mark.parametrize("deviation", [0.0, 0.3])
 def test_what_static_friction_scatters_from_stop_to_stop_is_in_the_noise(deviation):
     random = np.random.default_rng(6)
