@@ -6,10 +6,6 @@ class DriveClock:
 
     Readings within one step of it rise, too: each lies half-way from the one before to the step's end. A late cycle is
     followed by the next at once, and a record whose time stands still is none.
-
-    Args:
-        step_s: one step of its register [s].
-        bits: of its register.
     """
 
     def __init__(self, step_s: float, bits: int) -> None:

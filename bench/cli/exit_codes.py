@@ -44,11 +44,7 @@ class NoAnswerError(ServiceError):
 
 
 class StatusError(ServiceError):
-    """Raised when what is there answers with a problem.
-
-    Attributes:
-        status: of the answer.
-    """
+    """Raised when what is there answers with a problem."""
 
     def __init__(self, message: str, status: int) -> None:
         super().__init__(message)

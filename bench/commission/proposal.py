@@ -57,12 +57,7 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """Sections of bench.toml.
-
-    Attributes:
-        limits, motion, servo, search: as proposed.
-        design: the servo's margins.
-    """
+    """Sections of bench.toml."""
 
     limits: Limits
     motion: MotionSettings

@@ -9,12 +9,7 @@ from bench.drives.far_joint import FarJoint
 
 
 class SimulatedHand:
-    """A person whose hands are the device's side channel.
-
-    Args:
-        person: is asked what no hand can do.
-        joint: the simulated device.
-    """
+    """A person whose hands are the device's side channel."""
 
     def __init__(self, person: Person, joint: FarJoint) -> None:
         self._person, self._joint = person, joint

@@ -73,10 +73,6 @@ def values_of(action: Action, reading: Reading) -> tuple[Any, ...]:
 def row_reader(channels: Sequence[Channel], values: Sequence[str]) -> Callable[[tuple[Any, ...]], Row]:
     """What takes the row of some channels out of the values of a cycle.
 
-    Args:
-        channels: in the order of the row.
-        values: names of the values, in their order.
-
     Raises:
         ValueError: a channel reads what is not among them.
     """

@@ -35,10 +35,6 @@ def nobody(sentence: str) -> bool:
 def make_equipment(configuration: BenchConfiguration, ask: Ask = nobody) -> Equipment:
     """The drive, not yet open, and the technician.
 
-    Args:
-        configuration: of the bench.
-        ask: asks the person at a real drive.
-
     Raises:
         ConfigurationError: the section cannot be used; the message says why.
     """

@@ -11,11 +11,7 @@ UNNAMED = "stop was asked for"
 
 
 class StopRequest(threading.Event):
-    """Set once; the first reason is the one that is kept. Waits for nothing: safe in a signal handler.
-
-    Attributes:
-        reason: who asks, and why.
-    """
+    """Set once; the first reason is the one that is kept. Waits for nothing: safe in a signal handler."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -17,10 +17,6 @@ class LateCycles:
 
     Between two cycles the drive goes on with the last command. A current moves the joint away from its set point while
     the host is late. The limit that trips then is right, but its message has to name the late cycles as the cause.
-
-    Args:
-        clock: of the loop.
-        period_s: control period [s].
     """
 
     def __init__(self, clock: Clock, period_s: float) -> None:

@@ -81,12 +81,6 @@ class Station:
 def make_station(configuration: BenchConfiguration, pair: bool, clock: Clock, ask: Ask) -> Station:
     """What an experiment moves, not yet open.
 
-    Args:
-        configuration: of the bench.
-        pair: a master and a slave are wanted.
-        clock: paces the loop.
-        ask: asks the person at real drives.
-
     Raises:
         ConfigurationError: it cannot be made of this configuration.
     """

@@ -15,11 +15,7 @@ class Technician(Protocol):
 
 
 class SimulatedTechnician:
-    """Hangs the load on a simulated joint, and only when something has to change, as a person would.
-
-    Args:
-        joint: what has `hang_load`; the simulated drive.
-    """
+    """Hangs the load on a simulated joint, and only when something has to change, as a person would."""
 
     def __init__(self, joint: Technician) -> None:
         self._joint = joint

@@ -94,14 +94,7 @@ def _words(recording: Recording) -> str:
 
 
 def question(channel: str, largest: float, smallest: float, unit: str) -> str:
-    """What is asked about a value outside physics; "" where it is inside.
-
-    Args:
-        channel: which.
-        largest: of its values, in `unit`.
-        smallest: of them.
-        unit: of the channel.
-    """
+    """What is asked about a value outside physics; "" where it is inside."""
     wanted = PLAUSIBLE.get(channel)
     if wanted is None or (wanted.low <= smallest and largest <= wanted.high):
         return ""

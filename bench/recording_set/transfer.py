@@ -36,12 +36,6 @@ def import_recording_set(
 ) -> int:
     """Add a recording set to the store as one experiment: all of it, or nothing.
 
-    Args:
-        store: where it goes.
-        recording_set: checked already, since it could be read.
-        name: under which its user will look for it.
-        further: what else is kept among the experiment's parameters.
-
     Returns:
         The experiment's id.
     """

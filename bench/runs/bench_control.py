@@ -90,9 +90,6 @@ class BenchControl(ABC):
     """A bench in operation: `Runner` in this process, `RemoteRunner` in a process of its own.
 
     Both raise the same errors. Every method may be called from any thread.
-
-    Attributes:
-        configuration: of the bench.
     """
 
     configuration: BenchConfiguration

@@ -39,12 +39,7 @@ class Memory:
 
 
 class InMemoryBench:
-    """An open drive, its control loop, and who hangs its loads. Closes the drive at its end.
-
-    Args:
-        configuration: of the bench.
-        equipment: a drive in virtual time, not yet open.
-    """
+    """An open drive, its control loop, and who hangs its loads. Closes the drive at its end."""
 
     def __init__(self, configuration: BenchConfiguration, equipment: Equipment) -> None:
         self._equipment, self._session = equipment, Session(None)

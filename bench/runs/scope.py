@@ -36,12 +36,7 @@ class Scope(NamedTuple):
 
 
 def scope_of(configuration: BenchConfiguration, drive: Description) -> tuple[Scope, ...]:
-    """What can be compensated on this joint with this drive, and what cannot.
-
-    Args:
-        configuration: its rig, limits and motion.
-        drive: as found at connect.
-    """
+    """What can be compensated on this joint with this drive, and what cannot."""
     return tuple(_scopes(configuration, drive))
 
 

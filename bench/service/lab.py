@@ -33,11 +33,7 @@ class LabEndedError(BenchError, ConnectionError):
 
 
 class Asker:
-    """Whoever asked for a call. Once they have given it up, its process ends: nobody waits for the answer.
-
-    Args:
-        told: hears how far it has come.
-    """
+    """Whoever asked for a call. Once they have given it up, its process ends: nobody waits for the answer."""
 
     def __init__(self, told: Callable[[Stage], None] = lambda _: None) -> None:
         self.told = told
@@ -90,11 +86,7 @@ class Lab(Protocol):
 
 
 class LabHere:
-    """In the thread that calls.
-
-    Args:
-        store: what the functions are given.
-    """
+    """In the thread that calls."""
 
     def __init__(self, store: Store) -> None:
         self._store = store
@@ -115,11 +107,7 @@ class LabHere:
 
 
 class LabProcesses:
-    """In processes of their own, as many as are called at once; one that has started is used again.
-
-    Args:
-        url: of the store, which each of them opens.
-    """
+    """In processes of their own, as many as are called at once; one that has started is used again."""
 
     def __init__(self, url: str) -> None:
         self._url = url

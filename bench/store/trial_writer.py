@@ -11,12 +11,7 @@ from compensator.lab.recordings.recording import FloatArray
 
 
 class TrialWriter:
-    """A trial that is being recorded. What `append` was given is committed when it returns.
-
-    Attributes:
-        trial_id: the trial in the store.
-        rows: committed rows.
-    """
+    """A trial that is being recorded. What `append` was given is committed when it returns."""
 
     def __init__(self, database: Database, trial_id: int, channels: tuple[str, ...]) -> None:
         self.trial_id = trial_id

@@ -39,12 +39,6 @@ _ADVICE = {
 def add_effect(store: Store, study_id: int, effect: str, model_id: int | None = None) -> Changed:
     """Refit with one more effect and keep the child model.
 
-    Args:
-        store: with the study.
-        study_id: which study.
-        effect: its name.
-        model_id: the parent; None takes the newest model.
-
     Raises:
         StudyError: unknown effect, already in the model, or these trials cannot show it.
     """

@@ -36,11 +36,6 @@ from compensator.lab.rows.drivers import DRIVERS
 def compare(store: Store, study_id: int, model_id: int | None = None) -> Comparison:
     """Hold a model of a study against its trials.
 
-    Args:
-        store: with the study.
-        study_id: which study.
-        model_id: which model; None takes the newest.
-
     Raises:
         StudyError: no such model, or the trials cannot be used.
     """

@@ -48,12 +48,6 @@ def refit(store: Store, study_id: int, experiment_ids: Sequence[int], model_id: 
     The study's own trials give the cut-off, the shapes and the load that the model predicts. A study of a few trials
     can so be held against months of recordings.
 
-    Args:
-        store: with study and experiments.
-        study_id: which study.
-        experiment_ids: whose trials are read.
-        model_id: which model; None takes the newest.
-
     Raises:
         NotFoundError: no such study, model or experiment.
         StudyError: another rig, or no trial can be used.

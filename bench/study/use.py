@@ -23,12 +23,6 @@ def use(store: Store, study_id: int, configuration: BenchConfiguration, model_id
 
     At rest, and to select what hangs on the arm, the calibration in use so far stays: a study of motion tells neither.
 
-    Args:
-        store: with the study.
-        study_id: which study.
-        configuration: of the bench.
-        model_id: which model; None takes the newest.
-
     Raises:
         StudyError: no such model, one of another rig, no calibration to begin with, or an effort that is no torque.
     """

@@ -86,13 +86,7 @@ class Following:
     period_s: float
 
     def set_point(self, before_rad: float, master_rad: float, master_rad_s: float) -> Followed:
-        """One control cycle: the slave's set point.
-
-        Args:
-            before_rad: in the cycle before.
-            master_rad: position of the master, as measured.
-            master_rad_s: its speed.
-        """
+        """One control cycle: the slave's set point."""
         wanted_rad = self.slave_rad + self.scale * (master_rad - self.master_rad)
         held_rad = min(max(wanted_rad, self.low_rad), self.high_rad)
         way_rad = self.speed_rad_s * self.period_s

@@ -27,9 +27,6 @@ class ActuatorSession(Generic[ActuatorT]):
         connect: makes the actuator; the power is off then, and its watchdog set.
         joint: scales and signs.
         watchdog_s: silence after which it stops by itself [s]; None: it never does.
-
-    Attributes:
-        told: what it was told last to be in.
     """
 
     def __init__(

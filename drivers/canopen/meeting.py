@@ -26,12 +26,6 @@ def meet(
 ) -> tuple[State, Identity]:
     """Identity, power off, PRE-OPERATIONAL, in this order: a drive that leaves OPERATIONAL may go on turning.
 
-    Args:
-        table: of the drive's objects.
-        access: to them.
-        settings: of the drive.
-        pre_operational: sends the NMT command.
-
     Returns:
         The state in which the drive was found, and who it is.
 

@@ -27,12 +27,7 @@ _PURPOSE = "interpolation of positions"
 
 
 def set_interpolation(table: ObjectTable, period_s: float) -> None:
-    """Tell the drive how often positions come, where it wants to know (0x60C2).
-
-    Args:
-        table: of the drive's objects.
-        period_s: control period [s].
-    """
+    """Tell the drive how often positions come, where it wants to know (0x60C2)."""
     if table.ask(INTERPOLATION_PERIOD, _PURPOSE) is None:
         return
     exponent = table.ask(INTERPOLATION_EXPONENT, _PURPOSE)

@@ -41,13 +41,7 @@ _ERRORS = {0: "voltage", 1: "position sensor", 2: "overheating", 3: "over-curren
 
 
 def reading_of(data: bytes, asked_s: float, turns: Turns) -> Reading:
-    """The piece `PIECE` in SI.
-
-    Args:
-        data: of it.
-        asked_s: when it was asked for [s].
-        turns: follows the position beyond one turn.
-    """
+    """The piece `PIECE` in SI."""
     is_on, position, speed, load, supply, temperature, status, current = LAYOUT.unpack(data)
     counts_s = signed(speed, SPEED_SIGN)
     return Reading(

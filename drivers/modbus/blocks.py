@@ -12,14 +12,7 @@ LONGEST_WRITE = 121  # of function 23 (6.17)
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Words at consecutive addresses.
-
-    Attributes:
-        space: of all of them.
-        address: of the first.
-        words: how many.
-        registers: that lie in it.
-    """
+    """Words at consecutive addresses."""
 
     space: Space
     address: int

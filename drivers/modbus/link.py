@@ -33,10 +33,6 @@ _REFUSALS = {
 class Link:
     """A connection to one drive.
 
-    Args:
-        settings: where it is, and the time limit.
-        write_function: as the register map has it; see `RegisterMap`.
-
     Raises:
         DriveConnectionError: the port is not there or in use, or nobody listens.
     """

@@ -133,12 +133,7 @@ class Register:
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """Words as characters, two to a word, the first in the high byte; filled up with zeros.
-
-    Attributes:
-        name, space, address: as of a register.
-        words: how many.
-    """
+    """Words as characters, two to a word, the first in the high byte; filled up with zeros."""
 
     name: str
     space: Space

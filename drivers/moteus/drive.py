@@ -46,11 +46,6 @@ class MoteusDrive(ActuatorDrive[Any]):  # of MoteusActuator, which is imported w
 def follow(bus: BusSettings, servo_id: int, joint: JointScale) -> BusFollower:
     """Listen to its answers to another host, on a CAN-FD bus. What that host does not ask for is not told.
 
-    Args:
-        bus: how it is reached.
-        servo_id: of the controller.
-        joint: scales and signs.
-
     Raises:
         DriveConnectionError: the bus does not open.
     """

@@ -116,13 +116,7 @@ def text_of(data: bytes) -> bytes:
 
 
 def reading_of(found: State, counts_per_turn: float, asked_s: float) -> Reading:
-    """An answer in SI.
-
-    Args:
-        found: what it says.
-        counts_per_turn: of the rig.
-        asked_s: when it was asked for [s].
-    """
+    """An answer in SI."""
     # the sign of its phase current depends on how its output is set up, that of its torque does not
     current_a = copysign(found.current_a, found.torque_n_m)
     return Reading(

@@ -38,10 +38,6 @@ class MoteusLine:
     def ask(self, questions: Mapping[int, bytes], what: str) -> dict[int, bytes]:
         """Send a frame to each of some controllers, and take the answer of each.
 
-        Args:
-            questions: data by the id of the controller.
-            what: is asked for, for messages.
-
         Raises:
             DriveConnectionError: one of them does not answer, or the port is gone.
         """

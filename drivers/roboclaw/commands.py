@@ -15,14 +15,7 @@ CRC_BYTES = 2
 
 @dataclass(frozen=True, slots=True)
 class Read:
-    """A command that is answered with data.
-
-    Attributes:
-        number: of the command.
-        layout: of the data.
-        meaning: used in messages.
-        reply_bytes: data and CRC.
-    """
+    """A command that is answered with data."""
 
     number: int
     layout: Struct

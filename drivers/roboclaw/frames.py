@@ -40,11 +40,6 @@ def version_packet(address: int) -> bytes:
 
 
 def is_intact(request_crc: int, reply: bytes) -> bool:
-    """Whether the CRC at the end of a reply to a read is right.
-
-    Args:
-        request_crc: `crc16` of the request.
-        reply: data and CRC.
-    """
+    """Whether the CRC at the end of a reply to a read is right."""
     # of data followed by its own CRC, the CRC is 0
     return len(reply) > CRC_BYTES and crc_hqx(reply, request_crc) == 0

@@ -15,10 +15,6 @@ RESYNC_S = 0.012  # the controller forgets half a packet after 10 ms of silence
 class Link:
     """An open port to one controller.
 
-    Args:
-        settings: port, baud rate, address, time limit.
-        device: name used in messages.
-
     Raises:
         DriveConnectionError: the port is not there, or somebody else uses it.
     """

@@ -114,11 +114,6 @@ class Telemetry:
     def sample(self, status: Status, found: list[tuple[int, ...]], times_s: list[float]) -> Sample:
         """The sample of what was found; a slow question is asked where it is its turn, `faults` is up to date then.
 
-        Args:
-            status: of the power stage.
-            found: data of `quick`.
-            times_s: when each was asked for [s].
-
         Raises:
             DriveConnectionError: no valid answer in time.
         """

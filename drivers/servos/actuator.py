@@ -43,10 +43,6 @@ class ServoActuator(Actuator):
         bus: open.
         servo_id: which servo.
         leave: called when the servo is closed; gives the bus back.
-
-    Attributes:
-        piece: what each exchange reads.
-        torque_enable: the item that powers the stage.
     """
 
     bus: ServoBus

@@ -19,13 +19,7 @@ def error_names(word: int, names: dict[int, str]) -> str:
 
 
 class StatusPacket(NamedTuple):
-    """What a servo answers.
-
-    Attributes:
-        servo_id: of whom.
-        error: the error byte.
-        data: the parameters.
-    """
+    """What a servo answers."""
 
     servo_id: int
     error: int

@@ -141,12 +141,6 @@ class ServoFollower:
 def asked_model(settings: ServoSettings, frames: Frames, item: Item, models: Mapping[int, ModelT]) -> ModelT:
     """Ask a servo for its model, before the other program is there.
 
-    Args:
-        settings: which servo.
-        frames: of the protocol.
-        item: that tells the number of the model.
-        models: by their numbers.
-
     Raises:
         DriveConnectionError: the port is not there or in use, or nobody answers.
         DriveConfigurationError: a model whose numbers nobody here knows the meaning of.

@@ -234,12 +234,7 @@ __all__ = ["BRAKE", "CURRENT", "OFF", "OPEN", "TICK_S", "VOLTAGE", "Axis", "Dema
 
 
 class Device(Protocol):
-    """A drive's protocol and real-time half on an axis. It reads no clock; whoever calls says what time it is.
-
-    Attributes:
-        axis: the power stage and the joint.
-        lock: held by every thread while it calls.
-    """
+    """A drive's protocol and real-time half on an axis. It reads no clock; whoever calls says what time it is."""
 
     axis: Axis
     lock: RLock

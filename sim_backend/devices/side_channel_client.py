@@ -8,12 +8,7 @@ from sim_backend.errors import ParameterError
 
 
 class SideChannelClient:
-    """A conversation with a simulated device, over its side channel.
-
-    Args:
-        address: host:port.
-        timeout_s: longest wait for an answer [s].
-    """
+    """A conversation with a simulated device, over its side channel."""
 
     def __init__(self, address: str, timeout_s: float = 5.0) -> None:
         host, _, port = address.rpartition(":")

@@ -4,14 +4,7 @@ from sim_backend.plant.plant import Plant
 
 
 class HoldingBrake:
-    """Sets and releases the brake of a plant. It is set until its coil has had current for long enough.
-
-    Args:
-        plant: with the brake; without torque nothing happens.
-
-    Attributes:
-        is_released: whether the coil has current.
-    """
+    """Sets and releases the brake of a plant. It is set until its coil has had current for long enough."""
 
     def __init__(self, plant: Plant) -> None:
         self._plant = plant

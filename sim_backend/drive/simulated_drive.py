@@ -198,11 +198,7 @@ class SimulatedDrive:
         self.plant.hang(load)
 
     def idle(self, duration_s: float) -> None:
-        """Let time pass while nobody talks to the drive. After `watchdog_s` a powered drive switches itself off.
-
-        Args:
-            duration_s: simulated time [s], in whole periods.
-        """
+        """Let time pass while nobody talks to the drive. After `watchdog_s` a powered drive switches itself off."""
         self._require_open("idle")
         for _ in range(round(duration_s / self._period_s)):
             self._pass_period()

@@ -126,9 +126,6 @@ class FaultScript:
         faults: what goes wrong.
         wall: the wall clock [s]; for faults that go by it the script begins now.
 
-    Attributes:
-        faults: all of them, by their start.
-
     Raises:
         ParameterError: two of a kind overlap.
     """

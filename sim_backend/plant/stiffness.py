@@ -36,13 +36,7 @@ class Stiff(NamedTuple):
 
 
 class Quick(NamedTuple):
-    """A thermal mass that warms and cools.
-
-    Attributes:
-        parameter: the name of its heat capacity.
-        capacity_j_k: its value.
-        conductance_w_k: of all ways by which its heat goes.
-    """
+    """A thermal mass that warms and cools."""
 
     parameter: str
     capacity_j_k: float

@@ -16,12 +16,7 @@ _SOON_S = 0.01
 
 
 def watch(runner: "Runner", quiet: bool) -> None:
-    """Return when the experiment has ended.
-
-    Args:
-        runner: has been started.
-        quiet: show nothing.
-    """
+    """Return when the experiment has ended."""
     if not quiet:
         _announce(runner)
     if quiet:

@@ -51,11 +51,6 @@ StateT = TypeVar("StateT", bound=_State)
 class Search(Generic[StateT]):
     """One search, cycle by cycle.
 
-    Args:
-        state: in which it begins.
-        advance: by one control cycle.
-        found: how it ended, by its last state.
-
     Attributes:
         finished: True when it ended, with or without an estimate.
         phase: where it is, in words.

@@ -50,10 +50,6 @@ class Waveform:
 def read_waveform(text: str, source: str) -> Waveform:
     """Read the text of a CSV with the columns t_s (or time_s) and one of position_rad, current_a, duty.
 
-    Args:
-        text: of the file.
-        source: its name, for messages.
-
     Raises:
         ParameterError: naming file, line and column, what was found and what is wanted.
     """

@@ -38,12 +38,7 @@ class Assigned:
 
 
 def assign(files: Sequence[Columns], said: MappingOf[str, Said]) -> Assigned:
-    """The column of each quantity.
-
-    Args:
-        files: the columns of each.
-        said: what a user says of some of them.
-    """
+    """The column of each quantity."""
     columns: Columns = {}
     for one in files:
         columns = one | columns  # of a column that several have, the first one's values

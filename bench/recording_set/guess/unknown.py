@@ -57,12 +57,6 @@ def read_unknown(
 
     A recording set, or a file of one, tells what its columns are: it is read as an import reads it, and not guessed.
 
-    Args:
-        paths: a folder, a zip, or files.
-        rig: of the joint, where it is known.
-        known: what a user tells.
-        mapping: of the columns, where somebody wrote one.
-
     Raises:
         RecordingSetError: what `guess_of` refuses, a question that has to be answered first, or a value at fault.
     """

@@ -53,13 +53,7 @@ class Dialect:
 
 
 def dialect_of(lines: Sequence[str], delimiter: str | None = None, decimal: str | None = None) -> Dialect | None:
-    """The dialect of a file that begins with these lines; None where no lines of numbers are found in them.
-
-    Args:
-        lines: of the file, without their ends.
-        delimiter: where it is known.
-        decimal: where it is known.
-    """
+    """The dialect of a file that begins with these lines; None where no lines of numbers are found in them."""
     return _found(tuple(lines), delimiter, decimal)
 
 

@@ -20,11 +20,6 @@ Model = TypeVar("Model", bound=BaseModel)
 def parse_toml(data: bytes, model: type[Model], file: str) -> Model:
     """The content of a TOML file.
 
-    Args:
-        data: the file.
-        model: what it holds.
-        file: its name, for errors.
-
     Raises:
         RecordingSetError: no TOML, an unknown key, a value of the wrong type or out of range.
     """

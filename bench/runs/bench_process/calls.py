@@ -44,12 +44,7 @@ class Calls:
         self._pop(number)
 
     def fail(self, said: BaseException | None, reason: str) -> None:
-        """No more replies will come: the process has ended.
-
-        Args:
-            said: what it said of that, if anything.
-            reason: how it ended.
-        """
+        """No more replies will come: the process has ended."""
         with self._lock:
             left, accepted = dict(self._open), set(self._accepted)
         for number in left:

@@ -19,11 +19,6 @@ class Child:
 
     Its session is its own: Ctrl-C at the terminal is for the service, which stops the joint and then closes this.
 
-    Args:
-        stop_file: descriptor of the stop line's memory.
-        hello: sent first.
-        module: its `main` is what runs.
-
     Raises:
         OSError: the machine starts no more processes.
     """

@@ -104,12 +104,7 @@ SLOW: tuple[Method, ...] = ("begin", "look", "read_drives", "clear_faults")
 
 
 def failure_of(number: int, error: BaseException) -> Failure:
-    """An error as it is sent.
-
-    Args:
-        number: of the call that raised it.
-        error: what it raised.
-    """
+    """An error as it is sent."""
     attributes = {name: value for name, value in vars(error).items() if _can_be_sent(value)}
     kind = type(error) if _can_be_sent(type(error)) else RuntimeError
     trace = "".join(traceback.format_exception(error))

@@ -11,12 +11,7 @@ from bench.runs.live import LiveBuffer
 
 
 class Mirror:
-    """Status and live rows, at most a publisher's period old.
-
-    Attributes:
-        status: of the runner.
-        live: rows of the running trial.
-    """
+    """Status and live rows, at most a publisher's period old."""
 
     def __init__(self, limits: Limits) -> None:
         self.status = RunnerStatus(None, "", "", "", 0, 0, 0.0, None, None, limits)

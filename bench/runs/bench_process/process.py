@@ -31,14 +31,7 @@ LAST_S = 90.0  # a drive that does not let go by then is left to its watchdog
 
 
 class BenchProcess:
-    """What runs here.
-
-    Args:
-        connection: to the service.
-        line: for STOP.
-        configuration: of the bench.
-        store: this process's own access to it.
-    """
+    """What runs here."""
 
     def __init__(
         self, connection: "Connection", line: StopLine, configuration: BenchConfiguration, store: Store

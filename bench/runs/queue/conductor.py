@@ -30,11 +30,6 @@ class Conductor:
     The queue is held, and nothing of it starts: after a start of the service with something in it, after whatever did
     not complete, and after STOP. Then somebody has to resume it.
 
-    Args:
-        runner: of the bench.
-        store: where the queue is kept.
-        starting: entered round each start.
-
     Attributes:
         confirm: whether an item of the laboratory's queue, by its claim, may start now; asked before each.
         elsewhere: which item another process runs while this one waits for it, in words.

@@ -16,9 +16,6 @@ class Attempts:
 
     It keeps wrong tokens away from database, log and processor. It is no protection of the right one, which its 256
     bits are; so a right token is never asked to wait.
-
-    Args:
-        now_s: a clock that never goes back [s].
     """
 
     def __init__(self, now_s: Callable[[], float] = time.monotonic) -> None:

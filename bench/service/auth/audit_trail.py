@@ -94,11 +94,6 @@ class AuditTrail:
 
     Of requests without a token, of which none changes anything, an address has the first few noted, and then one every
     few seconds: the store would grow by them.
-
-    Args:
-        app: what it stands in front of.
-        add: takes an entry, without waiting.
-        strangers: counts requests without a token.
     """
 
     def __init__(self, app: ASGIApp, add: Callable[[AuditEntry], None], strangers: Attempts) -> None:

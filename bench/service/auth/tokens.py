@@ -38,12 +38,7 @@ class Role(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Caller:
-    """Whose token came with a request.
-
-    Attributes:
-        name: of the token.
-        role: of the token.
-    """
+    """Whose token came with a request."""
 
     name: str
     role: Role

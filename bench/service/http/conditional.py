@@ -15,11 +15,7 @@ ANSWER: dict[int | str, dict[str, Any]] = {
 
 
 class NotModifiedError(Exception):
-    """Raised by a route when the client has the present answer.
-
-    Attributes:
-        headers: of the answer.
-    """
+    """Raised by a route when the client has the present answer."""
 
     def __init__(self, headers: dict[str, str]) -> None:
         super().__init__("not modified")

@@ -15,9 +15,6 @@ class Faults:
 
     An exception that reaches the server makes it close the connection after the answer, without having said so: a
     client that keeps connections alive finds its next request reset.
-
-    Args:
-        app: what it stands in front of.
     """
 
     def __init__(self, app: ASGIApp) -> None:

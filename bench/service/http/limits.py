@@ -46,11 +46,6 @@ class Limits:
     """ASGI middleware: reads the body of a request that may change something, and refuses what is too much.
 
     Whoever has no token is answered without his body being read.
-
-    Args:
-        app: what it stands in front of.
-        access: whose token is whose.
-        longest_s: that a body may take to arrive [s].
     """
 
     def __init__(self, app: ASGIApp, access: Access, longest_s: float = LONGEST_S) -> None:

@@ -31,13 +31,7 @@ MOST_WRITTEN = 16  # events of rows that are kept for listeners who are about to
 
 
 class _Told(NamedTuple):
-    """A status as it is told.
-
-    Attributes:
-        at_s: when it was looked at.
-        key: what makes it new.
-        event: as text.
-    """
+    """A status as it is told."""
 
     at_s: float
     key: str

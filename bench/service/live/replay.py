@@ -48,12 +48,7 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """Rows of one trial out of the store.
-
-    Attributes:
-        trial: that they are of.
-        first_row, rows: which.
-    """
+    """Rows of one trial out of the store."""
 
     trial: Trial
     first_row: int

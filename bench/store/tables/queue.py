@@ -23,12 +23,7 @@ PLACES = (ITEM.place, ITEM.id)
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """An experiment that is asked for.
-
-    Attributes:
-        kind, parameters, operator, note, pace: as `Runner.start` takes them.
-        tags: given to the experiment.
-    """
+    """An experiment that is asked for."""
 
     kind: str
     parameters: Json
@@ -94,13 +89,7 @@ class Owners(Protocol):
 
 
 class QueueTable:
-    """The queue of one bench. Every method may be called from any thread.
-
-    Args:
-        database: of the store.
-        owners: of the store.
-        bench: its name; several benches may share a store.
-    """
+    """The queue of one bench. Every method may be called from any thread."""
 
     def __init__(self, database: Database, owners: Owners, bench: str) -> None:
         self._database = database

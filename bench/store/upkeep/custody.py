@@ -97,11 +97,7 @@ class Custody:
             self._note_all()
 
     def settle(self, reason: str = LEFT_RUNNING) -> None:
-        """End what dead processes left running, as they noted it or as interrupted; remove their half imports.
-
-        Args:
-            reason: of those that were interrupted.
-        """
+        """End what dead processes left running, as they noted it or as interrupted; remove their half imports."""
         backend = self._database.backend
         self._settle({token for token in self._tokens() if not backend.lives(token)}, reason)
 

@@ -26,11 +26,7 @@ ItemT = TypeVar("ItemT")
 
 
 class Import:
-    """An import under way.
-
-    Attributes:
-        experiment_id: its number.
-    """
+    """An import under way."""
 
     def __init__(self, database: Database, owner: str, new: NewExperiment) -> None:
         self._database = database

@@ -25,9 +25,6 @@ LONGEST_REASON = 1000  # characters
 class Owner:
     """A claim: held until `release`, or until the process is gone.
 
-    Args:
-        database: path of the database file.
-
     Raises:
         StoreFullError, StoreReadOnlyError: no file can be made beside the database.
     """

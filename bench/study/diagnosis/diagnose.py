@@ -22,11 +22,6 @@ from compensator.lab.rows.drivers import DRIVERS
 def diagnose(store: Store, study_id: int, model_id: int | None = None) -> Diagnosis:
     """Rank the effects that a model may be missing.
 
-    Args:
-        store: with the study.
-        study_id: which study.
-        model_id: which model; None takes the newest.
-
     Raises:
         StudyError: no such model, or no effect can be judged on these trials.
     """

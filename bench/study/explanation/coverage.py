@@ -34,11 +34,6 @@ SPEEDS = "a slower and a faster trial: ten times apart"
 def coverage(store: Store, study_id: int, model_id: int | None = None) -> Coverage:
     """What the trials of a study can and cannot tell beside a model.
 
-    Args:
-        store: with the study.
-        study_id: which study.
-        model_id: which model; None takes the newest.
-
     Raises:
         StudyError: no such model, or the trials cannot be used.
     """

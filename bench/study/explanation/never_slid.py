@@ -23,15 +23,7 @@ class NeverSlidError(StudyError):
 
 
 def never_slid_page(store: Store, experiment_id: int, name: str, sentence: str, came_in: Section | None = None) -> str:
-    """One HTML page.
-
-    Args:
-        store: with the experiment.
-        experiment_id: whose trials they are.
-        name: of what is explained.
-        sentence: what the lab says of them.
-        came_in: how the files were read.
-    """
+    """One HTML page."""
     recordings = [store.recording(trial.id) for trial in store.trials(experiment_id)]
     facts = facts_of(Rig.model_validate(store.experiment(experiment_id).rig))
     told = Section("In short", [sentence], figures=[_loops(recordings, choose_effort(recordings, facts), facts)])

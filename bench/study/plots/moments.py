@@ -35,12 +35,6 @@ def moments(store: Store, study_id: int, where: Sequence[str], model_id: int | N
 def action(store: Store, study_id: int, effect: str, model_id: int | None = None) -> Action:
     """When an effect that a model lacks would bring its prediction closer. Nothing is kept.
 
-    Args:
-        store: with the study.
-        study_id: which study.
-        effect: its name.
-        model_id: which model; None takes the newest.
-
     Raises:
         StudyError: no such model, an unknown effect, one that the model has, or one that these trials cannot show.
     """

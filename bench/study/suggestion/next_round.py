@@ -15,12 +15,6 @@ from compensator.lab import progress
 def next_round(store: Store, study_id: int, configuration: BenchConfiguration, trials: int = AT_ONCE) -> NextRound:
     """Add what was recorded for a study since the last round, and suggest trials by what all of it tells.
 
-    Args:
-        store: with the study.
-        study_id: which study.
-        configuration: of the bench that would run them.
-        trials: how many at most.
-
     Raises:
         NotFoundError, StudyError: as `extend_study` and `suggest`.
     """

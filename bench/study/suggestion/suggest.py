@@ -40,14 +40,6 @@ def suggest(
     suggested before, and tripped or failed on the joint itself, is kept out, and named. A simulated joint repeats a
     trial to the bit: what the study has of it already is not suggested again.
 
-    Args:
-        store: with the study.
-        study_id: which study.
-        configuration: of the bench that would run them.
-        model_id: which model; None takes the newest.
-        trials: how many at most.
-        refused: names of trials that are kept out besides.
-
     Raises:
         StudyError: no such model, a study of another rig, data that are wrong themselves, or what a trial would show
             cannot be computed.

@@ -77,9 +77,6 @@ class CanLink(canopen.Network):
     def receive(self, timeout_s: float) -> bool:
         """Wait for one frame, and hand it to its handler.
 
-        Args:
-            timeout_s: longest wait [s].
-
         Returns:
             Whether there was one, readable or not.
 

@@ -40,14 +40,7 @@ class ObjectRefusedError(DriveConfigurationError):
 
 
 class ObjectAccess:
-    """The SDO client of one drive.
-
-    Args:
-        link: open.
-        node_id: of the drive.
-        device: named in errors.
-        answer_s: longest wait for one answer [s].
-    """
+    """The SDO client of one drive."""
 
     def __init__(self, link: CanLink, node_id: int, device: str, answer_s: float) -> None:
         self._device = device

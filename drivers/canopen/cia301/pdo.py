@@ -39,14 +39,7 @@ class PdoLayout:
 
 @dataclass(frozen=True, slots=True)
 class Pdo:
-    """One PDO of the drive.
-
-    Attributes:
-        number: from 1.
-        transmit: True where the drive sends it.
-        cob_id: of its frames.
-        layout: what it carries.
-    """
+    """One PDO of the drive."""
 
     number: int
     transmit: bool

@@ -15,14 +15,7 @@ _INHIBIT_TIME, _EVENT_TIMER = 3, 5  # subindices of a TPDO's communication recor
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """One PDO of the drive as it was found.
-
-    Attributes:
-        number: from 1.
-        transmit: True where the drive sends it.
-        cob_id: as it reads.
-        mapped: the mapping as it reads.
-    """
+    """One PDO of the drive as it was found."""
 
     number: int
     transmit: bool

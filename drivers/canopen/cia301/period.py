@@ -47,10 +47,5 @@ def check_bus_load(settings: CanopenSettings, loads: Iterable[tuple[int, ...]], 
 
 
 def cycle_s(payload_bytes: tuple[int, ...], bitrate: int) -> float:
-    """Longest time that frames need [s].
-
-    Args:
-        payload_bytes: of each frame.
-        bitrate: of the bus [bit/s].
-    """
+    """Longest time that frames need [s]."""
     return sum((_OVERHEAD_BITS + 8 * size) * _STUFFING for size in payload_bytes) / bitrate

@@ -23,11 +23,6 @@ _NUMBERS = itertools.count()
 class Strangers:
     """Listens for what only another host sends, and names it.
 
-    Args:
-        link: open.
-        device: named in errors.
-        node_id: of the drive.
-
     Attributes:
         heard: node IDs whose heartbeats or boot-ups have been heard.
     """

@@ -187,11 +187,7 @@ class SyncCycle:
         return perf_counter() - self._sent_s
 
     def value(self, place: tuple[int, int]) -> int:
-        """What a TPDO told last.
-
-        Args:
-            place: number of the TPDO, place in it.
-        """
+        """What a TPDO told last."""
         return self.values[place[0]][place[1]]
 
 

@@ -19,15 +19,7 @@ _SLOWEST_RAD_S: Final = 2.0  # highest joint speed of that, where the settings n
 
 
 class Demand:
-    """Demands in one mode, from switching on to switching off.
-
-    Args:
-        settings: of the drive.
-        found: scales and objects of the drive.
-        data: its PDOs.
-        mode: CURRENT or POSITION.
-        position_counts: where the drive stands now.
-    """
+    """Demands in one mode, from switching on to switching off."""
 
     def __init__(
         self, settings: CanopenSettings, found: Capabilities, data: ProcessData, mode: Mode, position_counts: int
@@ -57,11 +49,6 @@ class Demand:
 
     def payload(self, command: Command, statusword: int, position_counts: int) -> bytes:
         """Payload of a command in operation.
-
-        Args:
-            command: in this mode.
-            statusword: as last received.
-            position_counts: as last received.
 
         Raises:
             DriveConfigurationError: a value is not finite, or does not fit its object; nothing may be sent.

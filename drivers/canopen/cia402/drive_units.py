@@ -87,11 +87,6 @@ class _Told:
 def read_units(table: ObjectTable, settings: CanopenSettings, counts_per_turn: float) -> DriveUnits:
     """Read the drive's units, and compare them.
 
-    Args:
-        table: of the drive's objects.
-        settings: of the drive.
-        counts_per_turn: counts of a motor turn, by the rig.
-
     Raises:
         DriveConfigurationError: the drive contradicts the rig or the settings, or itself.
     """

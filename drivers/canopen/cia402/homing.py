@@ -91,9 +91,6 @@ class HomingDemand:
     A drive that has homed before may show that until the new homing is under way: a bit counts once it was seen low,
     or stands for long.
 
-    Args:
-        data: PDOs of the drive.
-
     Attributes:
         code: of 0x6060.
         pdo: that carries the controlword.

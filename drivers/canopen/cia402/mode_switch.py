@@ -58,9 +58,6 @@ class ModeSwitch:
     def await_shown(self, step: Callable[[], object]) -> None:
         """Wait for the mode to be shown, now that the power is on.
 
-        Args:
-            step: one cycle that demands nothing.
-
         Raises:
             DriveConfigurationError: it is not shown in time. The caller switches off.
         """

@@ -35,11 +35,7 @@ _POWERED: Final = (State.ENABLED, State.QUICK_STOP, State.FAULT_REACTION)
 
 
 class PowerStage:
-    """The power stage of a connected drive.
-
-    Args:
-        session: connected.
-    """
+    """The power stage of a connected drive."""
 
     def __init__(self, session: Session) -> None:
         self._session = session

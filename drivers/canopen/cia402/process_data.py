@@ -84,11 +84,6 @@ class Arrangement:
 
     Each layout is tried where the drive has it already, then anywhere: drives differ in how many objects a PDO takes.
     Then what the drive has mapped by itself is taken, where it carries what is needed.
-
-    Args:
-        access: to the drive, PRE-OPERATIONAL.
-        device: named in errors.
-        node_id: of the drive.
     """
 
     def __init__(self, access: ObjectAccess, device: str, node_id: int) -> None:

@@ -11,9 +11,6 @@ class SetPointHandshake:
     """Gives each target to the drive once.
 
     A target stays as it is until the drive has acknowledged it; then bit 4 has to fall before the next one counts.
-
-    Args:
-        target: position that the drive holds already.
     """
 
     def __init__(self, target: int) -> None:
@@ -21,12 +18,7 @@ class SetPointHandshake:
         self._offered = False
 
     def step(self, wanted: int, statusword: int) -> tuple[int, int]:
-        """Controlword and target of the next cycle.
-
-        Args:
-            wanted: the target now.
-            statusword: as last received.
-        """
+        """Controlword and target of the next cycle."""
         acknowledged = bool(statusword & _ACKNOWLEDGED)
         if self._offered:
             self._offered = not acknowledged

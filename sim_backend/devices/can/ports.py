@@ -39,11 +39,7 @@ def port_of(device: CanDevice, settings: Served, interface: str, channel: str) -
 
 @dataclass(frozen=True, kw_only=True)
 class ServedOnBus(Served):
-    """Its joint and its bus.
-
-    Attributes:
-        interface, channel: as of `port_of`.
-    """
+    """Its joint and its bus."""
 
     interface: str = "slcan"
     channel: str = "0"

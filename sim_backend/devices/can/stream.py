@@ -15,13 +15,6 @@ class Stream:
     """The adapter's end.
 
     What the line holds back is sent later by a thread, so that the drive never waits for it.
-
-    Args:
-        adapter: fresh.
-        line: pace and faults.
-        clock: of the device.
-        write: puts bytes on the stream, without waiting.
-        deliver: puts frames on the bus.
     """
 
     def __init__(

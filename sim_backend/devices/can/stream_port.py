@@ -39,14 +39,7 @@ class CanDevicePort(PortThread):
 
 
 class SlcanPort(CanDevicePort):
-    """An slcan adapter on a pseudo-terminal.
-
-    Args:
-        device: what is on the adapter's bus.
-        clock: of the device.
-        line: pace and faults.
-        link: symbolic link for the host's end.
-    """
+    """An slcan adapter on a pseudo-terminal."""
 
     def __init__(self, device: CanDevice, clock: WallTime, line: Line, link: Path | None = None) -> None:
         self._link = link

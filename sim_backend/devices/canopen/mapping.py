@@ -20,12 +20,6 @@ class PdoParameters:
 
     A PDO is changed in this order: make it not exist (bit 31 of its COB-ID), number of mapped objects to 0, the mapped
     objects, their number, and the COB-ID without bit 31. One whose COB-ID cannot be written goes on existing.
-
-    Args:
-        dictionary: where the parameters are.
-        link: index of the communication parameter.
-        mapping: index of the mapping parameter.
-        received: it is an RPDO.
     """
 
     def __init__(self, dictionary: Dictionary, link: int, mapping: int, received: bool) -> None:

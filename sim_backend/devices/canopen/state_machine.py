@@ -75,9 +75,6 @@ def is_quick_stop_code(code: int) -> bool:
 class StateMachine:
     """The power state of a drive.
 
-    Args:
-        option: returns an option code by its index.
-
     Attributes:
         state: now.
         ending: how the motor is being stopped; None while it is not.

@@ -11,11 +11,7 @@ LOOK_UP_S = 0.02  # how soon a port notices that it shall close or disconnect
 
 
 class PortThread(threading.Thread, ABC):
-    """Serves until `close`.
-
-    Attributes:
-        error: what ended the thread before its time.
-    """
+    """Serves until `close`."""
 
     def __init__(self, line: Line, clock: WallTime, name: str) -> None:
         super().__init__(name=name, daemon=True)

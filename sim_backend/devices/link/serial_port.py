@@ -25,14 +25,7 @@ class ByteDevice(Device, Protocol):
 
 
 class SerialPort(PortThread):
-    """A device behind a serial port.
-
-    Args:
-        device: what answers.
-        clock: of the device.
-        line: pace and faults.
-        link: symbolic link for the host's end.
-    """
+    """A device behind a serial port."""
 
     def __init__(self, device: ByteDevice, clock: WallTime, line: Line, link: Path | None = None) -> None:
         super().__init__(line, clock, "device serial port")

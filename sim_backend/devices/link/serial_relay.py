@@ -11,13 +11,7 @@ from sim_backend.devices.wall_time import WallTime
 
 
 class SerialRelay(PortThread):
-    """A pseudo-terminal for hosts; the server has opened `inner`.
-
-    Args:
-        line: pace and faults.
-        clock: of the device.
-        link: symbolic link for the host's end.
-    """
+    """A pseudo-terminal for hosts; the server has opened `inner`."""
 
     def __init__(self, line: Line, clock: WallTime, link: Path | None = None) -> None:
         super().__init__(line, clock, "serial relay")

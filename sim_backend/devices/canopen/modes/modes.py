@@ -22,16 +22,7 @@ def make_modes(
     axis: Axis,
     counts_per_turn: float,
 ) -> dict[int, Mode]:
-    """Return those of the numbers (0x6060) that make the motor turn.
-
-    Args:
-        numbers: which modes.
-        dictionary: the drive's.
-        loop: its position controller.
-        units: of the drive.
-        axis: whose encoder homing has count from elsewhere.
-        counts_per_turn: of that encoder.
-    """
+    """Return those of the numbers (0x6060) that make the motor turn."""
     known: dict[int, Callable[[], Mode]] = {
         1: lambda: ProfilePosition(dictionary, loop, units),
         3: lambda: Velocity(dictionary, loop, units, profiled=True),

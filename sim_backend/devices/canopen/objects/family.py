@@ -12,14 +12,7 @@ Place = tuple[int, int]
 
 @dataclass(frozen=True)
 class Rating:
-    """The motor as the drive was set up for it.
-
-    Attributes:
-        current_a: rated current [A].
-        peak_a: largest current [A].
-        torque_constant_n_m_a: torque of a current [N m/A].
-        counts_per_turn: of the encoder.
-    """
+    """The motor as the drive was set up for it."""
 
     current_a: float
     peak_a: float
