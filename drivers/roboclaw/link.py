@@ -1,15 +1,54 @@
-"""The serial port: one question, one answer, in bounded time."""
+"""The serial port: one question, one answer, in bounded time.
+
+A write is `address, command, data, CRC` and answered with 0xFF, or not at all where the CRC is wrong. A read is
+`address, command`, without CRC, and answered with `data, CRC`; that CRC is over address, command and data. The CRC is
+CRC-16/XMODEM (polynomial 0x1021, start 0, neither reflected nor inverted), high byte first.
+"""
 
 import time
+from binascii import crc_hqx
 
 from drivers.errors import DriveConnectionError
 from drivers.host_time import ATTEMPTS, no_answer
-from drivers.roboclaw.commands import ACKNOWLEDGED, CRC_BYTES, LONGEST_VERSION_BYTES, Read, Write
-from drivers.roboclaw.frames import VERSION_END, crc16, is_intact, read_packet, version_packet, write_packet
+from drivers.roboclaw.commands import ACKNOWLEDGED, CRC_BYTES, LONGEST_VERSION_BYTES, READ_VERSION, Read, Write
 from drivers.roboclaw.settings import RoboclawSettings
 from drivers.serial_port import SerialPort
 
+VERSION_END = b"\n\0"
 RESYNC_S = 0.012  # the controller forgets half a packet after 10 ms of silence
+
+
+def crc16(data: bytes) -> int:
+    """CRC-16/XMODEM; of b"123456789" it is 0x31C3."""
+    return crc_hqx(data, 0)
+
+
+def write_packet(address: int, command: Write, *values: int) -> bytes:
+    """The bytes of a write.
+
+    Args:
+        address: 0x80 .. 0x87.
+        command: from the table.
+        values: as its layout wants them.
+    """
+    packet = bytes((address, command.number)) + command.layout.pack(*values)
+    return packet + crc16(packet).to_bytes(2, "big")
+
+
+def read_packet(address: int, command: Read) -> bytes:
+    """The bytes of a read."""
+    return bytes((address, command.number))
+
+
+def version_packet(address: int) -> bytes:
+    """The bytes that ask for the firmware version."""
+    return bytes((address, READ_VERSION))
+
+
+def is_intact(request_crc: int, reply: bytes) -> bool:
+    """Whether the CRC at the end of a reply to a read is right."""
+    # of data followed by its own CRC, the CRC is 0
+    return len(reply) > CRC_BYTES and crc_hqx(reply, request_crc) == 0
 
 
 class Link:

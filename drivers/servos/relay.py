@@ -5,26 +5,74 @@ for a moment and nothing is owed to the other program. Where that program falls 
 bus watchdog as well as a command does, and the silence of who commands has to stop the motor.
 """
 
+import os
+import pty
 import select
+import tty
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from time import perf_counter
 from typing import TypeVar
 
 from drivers.actuator.reading import Reading, sample_of
 from drivers.contract import Sample, Status
-from drivers.errors import DriveConfigurationError
+from drivers.errors import DriveConfigurationError, DriveConnectionError
 from drivers.joint import JointScale
 from drivers.serial_port import SerialPort
 from drivers.servos.actuator import ServoSettings
 from drivers.servos.bus import ServoBus
 from drivers.servos.frames import Frames, Item
-from drivers.servos.offered_port import OfferedPort
 
+_MOST_BYTES = 4096
 ModelT = TypeVar("ModelT")
 _QUIET_S = 0.002  # of the line, before a question of ours
 _OWED_S = 0.1  # longest wait for an answer to the other program: an adapter, or a busy host, may hold one back
 _ALIVE_S = 0.2  # who says nothing for longer counts as silent
+
+
+class OfferedPort:
+    """Our end of it.
+
+    Args:
+        link: a name for the other end, so that it can be written into that program's settings.
+
+    Raises:
+        DriveConnectionError: something that is no link of ours has the name.
+    """
+
+    def __init__(self, link: Path) -> None:
+        if link.exists() and not link.is_symlink():
+            raise DriveConnectionError(str(link), "is there already, and is no link; offer the port by another name")
+        self._link = link
+        self._ours, self._theirs = pty.openpty()  # their end stays open here: who goes is silent, and no error
+        tty.setraw(self._theirs)
+        os.set_blocking(self._ours, False)
+        link.unlink(missing_ok=True)
+        link.symlink_to(os.ttyname(self._theirs))
+
+    def fileno(self) -> int:
+        """For `select`."""
+        return self._ours
+
+    def take(self) -> bytes:
+        """What the other program has written."""
+        try:
+            return os.read(self._ours, _MOST_BYTES)
+        except BlockingIOError:
+            return b""
+
+    def give(self, data: bytes) -> None:
+        """Let the other program read something; what it has no room for is lost, as on a wire."""
+        with suppress(BlockingIOError):
+            os.write(self._ours, data)
+
+    def close(self) -> None:
+        """Take it away. Safe to call twice."""
+        self._link.unlink(missing_ok=True)
+        for descriptor in (self._ours, self._theirs):
+            with suppress(OSError):
+                os.close(descriptor)
 
 
 class ServoFollower:

@@ -1,4 +1,4 @@
-"""The client of a simulated device's side channel, see `side_channel.py`: knows neither device nor plant."""
+"""The client of a simulated device's side channel, see `process.py`: knows neither device nor plant."""
 
 import json
 import socket

@@ -4,9 +4,9 @@ import canopen
 import pytest
 
 from sim_backend.devices.can.frame import Frame
-from sim_backend.devices.canopen.eds import eds_text
 from sim_backend.devices.canopen.objects.epos4 import EPOS4
 from sim_backend.devices.canopen.objects.generic import GENERIC
+from sim_backend.devices.canopen.serve import eds_text
 from sim_backend.faults.script import OverCurrent
 from tests.devices.can_host import NODE, CanHost
 

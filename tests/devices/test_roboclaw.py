@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.roboclaw.channel import BACKWARD, OVERFLOW, UNDERFLOW, Counter
 from sim_backend.devices.roboclaw.commands import COMMANDS
-from sim_backend.devices.roboclaw.device import MEASURED, RoboClaw
-from sim_backend.devices.roboclaw.packets import crc16
+from sim_backend.devices.roboclaw.device import MEASURED, RoboClaw, crc16
 from sim_backend.faults.script import DriveFailed, OverTemperature, SupplyLost, TorqueDisabled
 
 ACK = b"\xff"

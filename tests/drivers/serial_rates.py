@@ -15,8 +15,8 @@ from pymodbus.client import ModbusSerialClient, ModbusTcpClient
 
 from drivers.contract import Command, Drive, Mode
 from drivers.joint import JointScale
-from drivers.modbus.client import QuickSerialClient
 from drivers.modbus.drive import ModbusDrive
+from drivers.modbus.link import QuickSerialClient
 from drivers.modbus.map_file import load_map
 from drivers.modbus.settings import ModbusSettings
 from drivers.roboclaw.drive import RoboclawDrive

@@ -7,8 +7,8 @@ from drivers.modbus.blocks import blocks
 from drivers.modbus.map_file import MapError, known_maps, load_map, parse_map
 from drivers.modbus.power_stage import state_of
 from drivers.modbus.register import Number, Register, Space
-from drivers.modbus.requests import plan
 from drivers.modbus.sampling import DriveClock
+from drivers.modbus.session import plan
 from tests.drivers.modbus_answers import MAP
 
 

@@ -4,10 +4,9 @@ import pytest
 
 from drivers.polled_drive import Identity
 from drivers.roboclaw import commands
-from drivers.roboclaw.flags import FLAGS_16_BIT, FLAGS_32_BIT, faults
-from drivers.roboclaw.frames import crc16, is_intact, read_packet, version_packet, write_packet
+from drivers.roboclaw.link import crc16, is_intact, read_packet, version_packet, write_packet
 from drivers.roboclaw.opening import parse_version
-from drivers.roboclaw.telemetry import EncoderCount
+from drivers.roboclaw.telemetry import FLAGS_16_BIT, FLAGS_32_BIT, EncoderCount, faults
 from tests.drivers.roboclaw_answers import crc
 
 M1 = commands.CHANNELS[1]

@@ -7,7 +7,7 @@ from unittest import mock
 import pytest
 
 from drivers.canopen.cia301.object_access import ObjectAccess
-from drivers.damiao.actuator import DamiaoActuator
+from drivers.damiao.drive import DamiaoActuator
 from drivers.errors import DriveConfigurationError, DriveConnectionError
 from drivers.feetech.frames import SCS, packet
 from drivers.servos.bus import ServoBus

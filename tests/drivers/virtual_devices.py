@@ -19,8 +19,8 @@ from sim_backend.devices.feetech.packets import InstructionReader as FeetechRead
 from sim_backend.devices.feetech.serve import _MEASURED as FEETECH
 from sim_backend.devices.feetech.servo import StsServo
 from sim_backend.devices.joint_tables import behind_a_drive
-from sim_backend.devices.moteus.adapter import FdcanusbAdapter
 from sim_backend.devices.moteus.controller import MoteusController
+from sim_backend.devices.moteus.serve import FdcanusbAdapter
 from sim_backend.devices.odrive.axis import OdriveAxis
 from sim_backend.devices.robstride.motor import RobstrideMotor
 from sim_backend.devices.servos.bus import ServoBus

@@ -6,7 +6,7 @@ from pymodbus.framer import FramerRTU
 
 from drivers.dynamixel.frames import crc16 as dynamixel_crc
 from drivers.feetech.frames import checksum as feetech_sum
-from drivers.roboclaw.frames import crc16 as roboclaw_crc
+from drivers.roboclaw.link import crc16 as roboclaw_crc
 
 Seal = Callable[[bytes, bytes], bytes]
 """From a question and its spoilt answer to an answer whose checksum is right; a question itself has an empty one."""

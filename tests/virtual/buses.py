@@ -7,7 +7,7 @@ from typing import Any
 import can
 from can.interfaces.virtual import VirtualBus
 
-from sim_backend.devices.can.bus_port import BusPort
+from sim_backend.devices.can.ports import BusPort
 from tests.commission.virtual_time import TIME
 
 _FRAME_S = 130e-6

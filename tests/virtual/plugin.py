@@ -28,8 +28,8 @@ _REPLACED: dict[str, Any] = {
     "serial.Serial": ports.VirtualSerial,
     "serial.serial_for_url": ports.VirtualSerial,
     "can.bus.time": TIME.now,  # with which python-can waits for a frame
-    "drivers.can_bus.slcan_bus.os": ports.OS,
-    "drivers.can_bus.slcan_bus.select": ports.SELECT,
+    "drivers.can_bus.bus.os": ports.OS,
+    "drivers.can_bus.bus.select": ports.SELECT,
     "drivers.host_time.processor_wait_s": lambda: 0.0,  # of real time
 }
 for _name, _value in _REPLACED.items():

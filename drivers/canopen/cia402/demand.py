@@ -7,15 +7,39 @@ from drivers.canopen.cia301.objects import CONTROLWORD, TORQUE_OFFSET, DriveObje
 from drivers.canopen.cia301.pdo import Pdo
 from drivers.canopen.cia402.modes import PROFILE_POSITION, TARGETS
 from drivers.canopen.cia402.process_data import ProcessData, rest_payload
-from drivers.canopen.cia402.set_point import SetPointHandshake
 from drivers.canopen.cia402.state_machine import ENABLE_OPERATION
 from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode
 from drivers.errors import DriveConfigurationError
 from drivers.refusal import check_demand
 
+_NEW_SET_POINT = 0x10
+_CHANGE_IMMEDIATELY = 0x20
+_ACKNOWLEDGED = 0x1000  # statusword bit 12
 _APPROACH_1_S: Final = 10.0  # speed for a position error, where this host closes the position [1/s]
 _SLOWEST_RAD_S: Final = 2.0  # highest joint speed of that, where the settings name none
+
+
+class SetPointHandshake:
+    """Gives each target to the drive once (CiA 402-2, 10.3).
+
+    A target stays as it is until the drive has acknowledged it; then bit 4 has to fall before the next one counts.
+    """
+
+    def __init__(self, target: int) -> None:
+        self._target = target
+        self._offered = False
+
+    def step(self, wanted: int, statusword: int) -> tuple[int, int]:
+        """Controlword and target of the next cycle."""
+        acknowledged = bool(statusword & _ACKNOWLEDGED)
+        if self._offered:
+            self._offered = not acknowledged
+        elif not acknowledged and wanted != self._target:
+            self._target = wanted
+            self._offered = True
+        bits = _NEW_SET_POINT | _CHANGE_IMMEDIATELY if self._offered else 0
+        return ENABLE_OPERATION | bits, self._target
 
 
 class Demand:

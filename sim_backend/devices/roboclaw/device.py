@@ -2,8 +2,9 @@
 
 from collections import deque
 from math import exp
-from struct import pack
+from struct import pack, unpack
 from threading import RLock
+from typing import NamedTuple
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import OFF, TICK_S, VOLTAGE, Axis, Demand, Device
@@ -11,7 +12,6 @@ from sim_backend.devices.roboclaw.channel import FULL_DUTY, Channel, Counter
 from sim_backend.devices.roboclaw.commands import ACKNOWLEDGED, COMMANDS
 from sim_backend.devices.roboclaw.handlers import handlers_of
 from sim_backend.devices.roboclaw.memory import WARM_C, Flag, Settings, flag_of
-from sim_backend.devices.roboclaw.packets import ADDRESSES, PacketReader, Request, crc16
 from sim_backend.plant.parameters import PlantParameters
 
 VERSION = b"USB Roboclaw 2x15a v4.1.34 simulated\n\0"  # so that no record of it is taken for one of hardware
@@ -21,6 +21,97 @@ _SPEED_LAG_S = 0.02  # of commands 18, 19, which the manual calls filtered and d
 _SPEED_SHARE = 1.0 - exp(-TICK_S / _SPEED_LAG_S)
 
 Values = tuple[int, ...]
+
+
+def _of_byte(byte: int) -> int:
+    register = byte << 8
+    for _ in range(8):
+        register = (register << 1) ^ 0x1021 if register & 0x8000 else register << 1
+    return register & 0xFFFF
+
+
+_TABLE = tuple(_of_byte(byte) for byte in range(256))
+
+
+def crc16(data: bytes) -> int:
+    """Return the CRC of some bytes."""
+    register = 0
+    for byte in data:
+        register = ((register << 8) & 0xFFFF) ^ _TABLE[(register >> 8) ^ byte]
+    return register
+
+
+LONGEST_GAP_S = 0.010
+ADDRESSES = range(0x80, 0x88)
+_HEAD = 2  # address, command
+_CRC = 2
+
+
+class Request(NamedTuple):
+    """A valid packet.
+
+    Attributes:
+        head: address and command, which the CRC of an answer covers too.
+        command: its number.
+        values: the payload, unpacked.
+    """
+
+    head: bytes
+    command: int
+    values: tuple[int, ...]
+
+
+class PacketReader:
+    """Collects bytes, and drops what is not a packet.
+
+    A pause of more than 10 ms ends a packet. After anything invalid the device hears nothing until such a pause: there
+    is no other way to tell where the next packet begins.
+
+    Args:
+        addresses: to which it listens; over USB a RoboClaw takes any of 0x80 .. 0x87.
+    """
+
+    def __init__(self, addresses: frozenset[int]) -> None:
+        self._addresses = addresses
+        self._buffer = b""
+        self._deaf = False
+        self._last_s = -LONGEST_GAP_S
+
+    def forget(self) -> None:
+        """Drop half a packet."""
+        self._buffer = b""
+        self._deaf = False
+
+    def feed(self, data: bytes, time_s: float) -> list[Request]:
+        """Return the packets that are complete with bytes that arrived at a time [s]."""
+        if time_s - self._last_s > LONGEST_GAP_S:
+            self.forget()
+        self._last_s = time_s
+        requests = []
+        self._buffer += data
+        while not self._deaf and (request := self._take()):
+            requests.append(request)
+        if self._deaf:
+            self._buffer = b""
+        return requests
+
+    def _take(self) -> Request | None:
+        buffer = self._buffer
+        if (buffer and buffer[0] not in self._addresses) or (len(buffer) >= _HEAD and buffer[1] not in COMMANDS):
+            self._deaf = True
+            return None
+        if len(buffer) < _HEAD:
+            return None
+        command = COMMANDS[buffer[1]]
+        end = _HEAD + command.payload_length
+        length = end if command.reply else end + _CRC
+        if len(buffer) < length:
+            return None
+        if not command.reply and crc16(buffer[:end]) != int.from_bytes(buffer[end:length]):
+            self._deaf = True
+            return None
+        self._buffer = buffer[length:]
+        return Request(buffer[:_HEAD], buffer[1], unpack(">" + command.payload, buffer[_HEAD:end]))
 
 
 class RoboClaw(Device):

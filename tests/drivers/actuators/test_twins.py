@@ -7,8 +7,8 @@ import pytest
 from drivers.can_bus.settings import BusSettings
 from drivers.errors import DriveConfigurationError
 from drivers.moteus.actuator import MoteusActuator
-from drivers.odrive.actuator import OdriveActuator
-from drivers.robstride.actuator import RobstrideActuator
+from drivers.odrive.drive import OdriveActuator
+from drivers.robstride.drive import RobstrideActuator
 from sim_backend.devices.cubemars.motor import CubemarsMotor
 from sim_backend.devices.damiao.motor import DamiaoMotor
 from sim_backend.devices.mit.serve import MitSimulation, serve_mit

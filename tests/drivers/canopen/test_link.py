@@ -7,7 +7,7 @@ import time
 import can
 import pytest
 
-from drivers.can_bus.bounded import bounded
+from drivers.can_bus.bus import bounded
 from drivers.can_bus.port import CanPort
 from drivers.can_bus.settings import BusSettings
 from drivers.canopen.cia301.bus import BusPort

@@ -1,6 +1,6 @@
 import pytest
 
-from drivers.canopen.cia402.set_point import SetPointHandshake
+from drivers.canopen.cia402.demand import SetPointHandshake
 from drivers.canopen.cia402.state_machine import State, state_of, status_of, towards_enabled, towards_standstill
 from drivers.contract import Status
 

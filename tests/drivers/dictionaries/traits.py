@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from sim_backend.devices.canopen.data_types import U8, U32
-from sim_backend.devices.canopen.eds import eds_text
 from sim_backend.devices.canopen.objects.entry import Access, Entry, Object, record
 from sim_backend.devices.canopen.objects.family import Rating
 from sim_backend.devices.canopen.objects.generic import GENERIC
+from sim_backend.devices.canopen.serve import eds_text
 from sim_backend.devices.joint_tables import behind_a_drive
 
 Place = tuple[int, int]
