@@ -2,6 +2,7 @@
 
 import gc
 import os
+import shlex
 import signal
 import socket
 from collections.abc import Callable, Iterator
@@ -15,6 +16,7 @@ from fastapi import FastAPI
 from bench import __version__
 from bench.commission.guide import ENDED
 from bench.config.configuration import BenchConfiguration
+from bench.control.drive_factory import is_simulated
 from bench.errors import ConfigurationError
 from bench.own_processes import OwnProcess, announced, new_file
 from bench.own_service import LOOPBACK_NAMES, is_loopback, own_file
@@ -24,17 +26,57 @@ from bench.runs.bench_process.remote_runner import RemoteRunner
 from bench.service.auth.access import Access, check_bind
 from bench.service.auth.session import session_file, session_token
 from bench.service.auth.tls import Certificate
-from bench.service.auth.token_register import TokenRegister, first_token, has_valid_token
-from bench.service.auth.tokens import SAME_USER, chosen_token, token_file
+from bench.service.auth.token_register import TokenRegister, Tokens, first_token, has_valid_token
+from bench.service.auth.tokens import ENVIRONMENT, SAME_USER, TOKEN_VARIABLE, chosen_token, token_file
+from bench.service.http.api_router import PREFIX
 from bench.service.http.connections import Connection, allow_files
 from bench.service.lab import Lab, LabProcesses
-from bench.service.welcome import Place, welcome
 from bench.store import Store
+from bench.store.address import shown
 
 MakeApp = Callable[[Store, BenchControl, Access, Lab], FastAPI]
 """As `bench.service.app.create_app`."""
 _HERE = {"": "127.0.0.1", "0.0.0.0": "127.0.0.1", "::": "::1"}  # noqa: S104  where it is reached that listens everywhere
 LINGER_S = 2  # how long open connections are waited for at the end
+
+
+class Place(NamedTuple):
+    """Where the service listens."""
+
+    host: str
+    port: int
+    encrypted: bool
+
+    @property
+    def url(self) -> str:
+        """Its address."""
+        name = f"[{self.host}]" if ":" in self.host else self.host
+        return f"{'https' if self.encrypted else 'http'}://{name}:{self.port}"
+
+
+def welcome(configuration: BenchConfiguration, place: Place, tokens: Tokens) -> list[str]:
+    """The lines."""
+    drive = "SIMULATED drive, no hardware moves" if is_simulated(configuration) else "REAL drive, the joint moves"
+    lines = [
+        f"bench  {configuration.name}: {drive}",
+        f"store  {shown(configuration.store.url)}",
+        f"page   {place.url}/",
+        f"REST   {place.url}{PREFIX}/openapi.json",
+        f"token  {_token(configuration, tokens)}",
+    ]
+    if not place.encrypted and not is_loopback(place.host):
+        lines.append("tokens and data cross the network in the clear: see --tls-certificate and --tls-key")
+    return [*lines, "Ctrl-C stops the joint and ends the service."]
+
+
+def _token(configuration: BenchConfiguration, tokens: Tokens) -> str:
+    if tokens.made is not None:
+        return f"{tokens.made}   (the page asks for it; keep it to yourself: it is shown this once)"
+    if tokens.chosen is None:
+        store = shlex.quote(shown(configuration.store.url))
+        return f"was shown at the first start; another one: friction-bench --store {store} token new NAME --role admin"
+    name, _ = tokens.chosen
+    return f"that of {TOKEN_VARIABLE if name == ENVIRONMENT else token_file(configuration.store.url)}"
 
 
 class Address(NamedTuple):

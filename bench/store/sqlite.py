@@ -6,27 +6,98 @@ Transactions that write take the write lock when they begin, so that the busy ti
 SQLite does not wait when a reading transaction turns into a writing one.
 """
 
+import os
 import shutil
 import sqlite3
 import time
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, closing, nullcontext
 from pathlib import Path
+from urllib.parse import quote
 
 from sqlalchemy import Connection, Engine, Pool, create_engine, event
 from sqlalchemy.engine import URL
 from sqlalchemy.pool import ConnectionPoolEntry
 
 from bench.store.errors import StoreError, StoreFileError, StoreFullError, StoreLockedError, StoreReadOnlyError
-from bench.store.sqlite_file import SqliteFile
 from bench.store.tables.json_text import from_json, to_json
 from bench.store.upkeep import owner
 
+_EFFECTIVE = os.access in os.supports_effective_ids
 WAL_LIMIT_BYTES = 64 * 2**20  # the log is cut back to this after a large import
 PAGE_BYTES = 16_384  # of a new file: blocks are read 1.6 times as fast as with SQLite's 4096, measured
 RETRY_S = 0.01
 OWNERS_MODE = 0o600  # of a new file: who may read the bench's records is its owner's to say
 WRITES = "writes"  # execution option of connections that are going to write
+
+
+class SqliteFile:
+    """A database file and its log.
+
+    Args:
+        path: of the database, absolute; it need not be there yet.
+
+    Attributes:
+        is_read_only: the file or its folder may not be written: it is read as it is, and nothing is made beside it.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.is_read_only = path.exists() and not (_may_write(path) and _may_write(path.parent))
+        self._inode: int | None = None
+
+    @property
+    def log(self) -> Path:
+        """Where SQLite keeps what was committed and is not yet in the file."""
+        return self.path.with_name(f"{self.path.name}-wal")
+
+    def connect(self, busy_timeout_s: float) -> sqlite3.Connection:
+        """A connection; the file is made by the first one alone.
+
+        Args:
+            busy_timeout_s: how long a statement waits for a lock of another connection [s].
+
+        Raises:
+            StoreFileError: it was taken away since.
+            sqlite3.Error: as SQLite says it.
+        """
+        self.require()
+        address = f"file:{quote(str(self.path))}?mode={self._mode()}"
+        # the lock must be waited for from the first statement on
+        made = sqlite3.connect(address, uri=True, timeout=busy_timeout_s, check_same_thread=False)
+        self._inode = self._inode or self._found()
+        return made
+
+    def require(self) -> None:
+        """Refuse to go on with a file that is not there any more, or with another one in its place.
+
+        SQLite would go on: it would write rows that nobody finds again, and read of a file that is empty.
+
+        Raises:
+            StoreFileError: with the next step.
+        """
+        if self._inode is not None and self._found() != self._inode:
+            raise StoreFileError(
+                f"store '{self.path}' was deleted, moved or replaced while it was in use; nothing more can be kept or "
+                "read. Put the file back if you can, and start this program again"
+            )
+
+    def _mode(self) -> str:
+        if not self.is_read_only:
+            return "rwc" if self._inode is None else "rw"
+        # without a log nothing can change it, and SQLite needs no file beside it to tell other programs so
+        has_log = self.log.exists() and self.log.stat().st_size > 0
+        return "ro" if has_log else "ro&immutable=1"
+
+    def _found(self) -> int | None:
+        try:
+            return self.path.stat().st_ino
+        except (FileNotFoundError, NotADirectoryError):
+            return None
+
+
+def _may_write(path: Path) -> bool:
+    return os.access(path, os.W_OK, effective_ids=_EFFECTIVE)
 
 
 class Sqlite:

@@ -3,8 +3,7 @@
 import typer
 from typer.cli import get_docs_for_click
 
-from bench.cli.app import app
-from bench.cli.command_group import CommandGroup
+from bench.cli.app import CommandGroup, app
 from bench.cli.commands import COMMANDS
 from bench.cli.exit_codes import HELP
 from docs.generate.markdown import code, table

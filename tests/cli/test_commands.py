@@ -8,8 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 import bench
-from bench.cli.app import app
-from bench.cli.command_group import ListedCommand
+from bench.cli.app import ListedCommand, app
 from bench.cli.commands import COMMANDS, CommandEntry
 
 HEAVY = {"numpy", "scipy", "numba", "pydantic", "fastapi", "sqlalchemy", "plotly", "httpx", "rich", "can", "canopen"}

@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from bench.cli.operation.prompt import attend
+from bench.cli.operation.watch import attend
 from bench.control.prompt import PromptDesk
 
 

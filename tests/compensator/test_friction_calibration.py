@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from compensator.errors import CalibrationError
-from compensator.motion.calibration_points import check_points
-from compensator.motion.friction_calibration import NOT_COVERED, NOT_TOLD, fit
+from compensator.motion.friction_calibration import NOT_COVERED, NOT_TOLD, check_points, fit
 from compensator.motion.kinetic_friction import KineticFriction
 from compensator.motor.dc_motor import MotorConstants, current_a
 

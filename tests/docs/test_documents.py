@@ -11,7 +11,7 @@ import yaml
 from typer.core import TyperGroup
 
 import bench
-from bench.cli.command_group import ListedCommand
+from bench.cli.app import ListedCommand
 from bench.cli.commands import COMMANDS
 from bench.config.drives.registry import drive_kinds
 from tests.docs.documents import DOCUMENTS, GENERATED, commands_in, name_of, text_of

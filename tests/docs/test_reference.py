@@ -9,7 +9,7 @@ from pydantic import BaseModel, Field
 
 from bench.cli.commands import COMMANDS
 from bench.config.configuration import BenchConfiguration
-from bench.drives.sim.faults import FaultSettings
+from bench.drives.sim.settings import FaultSettings
 from bench.experiments.registry import KINDS
 from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.recordings.recording import CHANNELS

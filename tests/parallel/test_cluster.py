@@ -6,9 +6,7 @@ import time
 
 import pytest
 
-from bench.parallel import cluster
-from bench.parallel.cluster import ClusterError
-from bench.parallel.over_cores import as_they_end, over_cores
+from bench.parallel.over_cores import ClusterError, as_they_end, over_cores
 from bench.store import Store
 from bench.study.create import create_study
 from bench.study.diagnosis.diagnose_many import diagnose_many
@@ -55,7 +53,7 @@ def test_an_address_is_never_guessed():
 
 def test_a_cluster_that_does_not_answer_is_named(monkeypatch):
     pytest.importorskip("distributed", reason="needs the extra `cluster`")
-    monkeypatch.setattr(cluster, "CONNECT_S", 0.2)
+    monkeypatch.setattr("bench.parallel.over_cores.CONNECT_S", 0.2)
     with pytest.raises(ClusterError, match=r"tcp://127\.0\.0\.1:9: no scheduler answers"):
         list(over_cores(squared, [1], cluster="tcp://127.0.0.1:9"))
 

@@ -3,7 +3,7 @@
 import pytest
 
 from bench.recording_set import Mapping
-from bench.recording_set.text.suggestions import _UNITS, suggestion
+from bench.recording_set.text.columns import _UNITS, suggestion
 from bench.recording_set.text.toml_file import parse_toml
 from bench.recording_set.units import ENDINGS, unit_named
 from compensator.lab.recordings.recording import CHANNELS

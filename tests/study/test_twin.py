@@ -10,7 +10,7 @@ from bench.control.drive_factory import Equipment
 from bench.experiments.registry import find_kind, parse_parameters
 from bench.runs.in_memory import InMemoryBench
 from bench.study.suggestion.dynamics import Drive, Dynamics
-from bench.study.suggestion.twin import Twin
+from bench.study.suggestion.predict import Twin
 from drivers.contract import Command, Mode
 
 JOINT = Dynamics(

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 from zlib import crc32
 
-from sqlalchemy import JSON, Connection, Table, delete
+import numpy as np
+from sqlalchemy import JSON, Connection, Table, delete, insert, select, update
 from sqlalchemy.engine import make_url
 
 from bench.store.address import database_of
@@ -18,10 +19,10 @@ from bench.store.migration import migrate
 from bench.store.schema import CHAIN, METADATA, SAMPLE_BLOCK, SAMPLE_OVERVIEW, TRIAL, OwnerToken, PlainText, UtcDateTime
 from bench.store.sqlite import file_of
 from bench.store.tables import chain
-from bench.store.tables.samples import SAMPLE_BYTES
+from bench.store.tables.samples import SAMPLE_BYTES, decode, encode
 from bench.store.upkeep.chain_check import broken_chain, ended
-from bench.store.upkeep.gaps import fill_gaps
 from bench.store.upkeep.salvage import UNREADABLE, columns_of, damaged, rows_of
+from compensator.lab.recordings.recording import FloatArray
 
 # a kind of column, what reads it or raises, and what stands in the place of what cannot be read
 READERS: tuple[tuple[type, Callable[[Any], object], str], ...] = (
@@ -31,6 +32,67 @@ READERS: tuple[tuple[type, Callable[[Any], object], str], ...] = (
     (PlainText, lambda value: _text(value), ""),
 )
 BLOCKS = (SAMPLE_BLOCK.name, SAMPLE_OVERVIEW.name)
+
+
+def fill_gaps(connection: Connection) -> Iterator[str]:
+    """Fill the lost rows of each trial with NaN, cut off a lost end, and mark the trial as interrupted.
+
+    Times are spread evenly between their neighbours, as they have to rise. An overview is left out: without one, plots
+    read all rows.
+
+    Yields:
+        What is lost, in words.
+    """
+    for trial_id, rows, channels in connection.execute(select(TRIAL.c.id, TRIAL.c.rows, TRIAL.c.channels)).all():
+        lost = list(_fill(connection, trial_id, rows, channels))
+        if lost:
+            words = f"rows {', '.join(lost)} of {rows} are lost, and empty or cut off since a repair of the store"
+            changed = update(TRIAL).where(TRIAL.c.id == trial_id).values(outcome="interrupted", reason=words)
+            connection.execute(changed)
+            connection.execute(delete(SAMPLE_OVERVIEW).where(SAMPLE_OVERVIEW.c.trial_id == trial_id))
+            yield f"trial {trial_id}: {words}"
+
+
+def _fill(connection: Connection, trial_id: int, rows: int, channels: list[str]) -> Iterator[str]:
+    table = SAMPLE_BLOCK.c
+    query = select(table.first_row, table.rows).where(table.trial_id == trial_id).order_by(table.first_row)
+    covered = 0
+    for first, count in connection.execute(query).all():
+        if first > covered:
+            yield f"{covered} .. {first - 1}"
+            between = _empty(connection, trial_id, (covered, first), channels)
+            values = {"trial_id": trial_id, "first_row": covered, "rows": first - covered, "data": encode(between)}
+            connection.execute(insert(SAMPLE_BLOCK).values(**values))
+        covered = max(covered, first + count)
+    if covered != rows:
+        yield f"{covered} .. {rows - 1}"
+        connection.execute(update(TRIAL).where(TRIAL.c.id == trial_id).values(rows=covered))
+
+
+def _empty(connection: Connection, trial_id: int, gap: tuple[int, int], channels: list[str]) -> FloatArray:
+    """Columns for the rows of a gap, shape (channels, rows): times between those of its neighbours, all else NaN."""
+    count, time = gap[1] - gap[0], channels.index("time_s")
+    found = np.full((len(channels), count), np.nan)
+    after = _times(connection, trial_id, gap[1], time)
+    before = _times(connection, trial_id, gap[0], time, ends_there=True)
+    if len(before):
+        found[time] = np.linspace(before[-1], after[0], count + 2)[1:-1]
+    else:  # the beginning: by the period of what follows
+        period_s = after[1] - after[0] if len(after) > 1 else 0.0
+        found[time] = after[0] - period_s * np.arange(count, 0, -1)
+    return found
+
+
+def _times(connection: Connection, trial_id: int, row: int, time: int, ends_there: bool = False) -> FloatArray:
+    """Times of the block that begins at a row, or ends before it; none where there is no such block."""
+    table = SAMPLE_BLOCK.c
+    place = table.first_row + table.rows if ends_there else table.first_row
+    query = select(table.data, table.rows).where(table.trial_id == trial_id, place == row)
+    found = connection.execute(query).first()
+    if found is None:
+        return np.empty(0)
+    times: FloatArray = decode(found.data, len(found.data) // (8 * found.rows))[time]
+    return times
 
 
 def repair(source: str, target: Path) -> list[str]:
