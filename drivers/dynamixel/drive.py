@@ -12,7 +12,7 @@ from drivers.contract import Mode
 from drivers.dynamixel import control_table as table
 from drivers.dynamixel import opening
 from drivers.dynamixel.frames import PROTOCOL_2, REBOOT, packet
-from drivers.dynamixel.models import MODELS, Model
+from drivers.dynamixel.opening import MODELS, Model
 from drivers.dynamixel.settings import DynamixelSettings
 from drivers.errors import DriveConnectionError
 from drivers.joint import JointScale

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.devices.modbus.own_drive import OwnDrive
-from sim_backend.devices.modbus.register_file import Refused, Unanswered
-from sim_backend.devices.modbus.registers import Kind, from_words, to_words
+from sim_backend.devices.modbus.register_file import Kind, Refused, Unanswered, from_words, to_words
 from sim_backend.devices.modbus.roboteq import Roboteq
 from sim_backend.faults.script import DriveFailed, OverCurrent, OverTemperature, SupplyLost, TorqueDisabled
 

@@ -16,7 +16,7 @@ from bench.runs.runner import HostProcess, Runner
 from bench.store import Store
 from bench.store.errors import StoreFullError
 from bench.store.sqlite import Sqlite
-from bench.store.trial_writer import TrialWriter
+from bench.store.trial_store import TrialWriter
 from drivers.errors import DriveConnectionError
 from tests.control.fake_drive import FakeDrive
 

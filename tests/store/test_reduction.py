@@ -5,7 +5,7 @@ import pytest
 
 from bench.store import Store
 from bench.store.errors import StoreValueError
-from bench.store.tables.plotted.reduction import rows_to_keep
+from bench.store.tables.plotted.window import rows_to_keep
 from tests.store.examples import begin, begin_trial
 
 

@@ -44,9 +44,8 @@ def explain(
     """Import files of any bench, say what a model of the joint lacks, and write a report for a colleague."""
     from bench.recording_set import import_recording_set, read_mapping, read_rig
     from bench.recording_set.guess import read_unknown
-    from bench.study.explanation.explain import STEPS
+    from bench.study.explanation.explain import STEPS, NeverSlidError
     from bench.study.explanation.explain import explain as explain_experiment
-    from bench.study.explanation.never_slid import NeverSlidError
     from bench.study.report.model_sections import change_of
 
     chosen_rig = None if rig is None else read_rig(rig)

@@ -39,7 +39,7 @@ def follow(settings: DynamixelDriveSettings, rig: Rig, link: Path, period_s: flo
 def scan(place: SerialPlace) -> Iterator[FoundDrive]:
     """Ask everybody, at each baud rate."""
     from drivers.dynamixel.frames import PROTOCOL_2
-    from drivers.dynamixel.models import MODELS
+    from drivers.dynamixel.opening import MODELS
     from drivers.servos.bus import answering
 
     for baud_rate in place.baud_rates or _BAUD_RATES:

@@ -8,7 +8,7 @@ import numpy as np
 from bench.config.configuration import BenchConfiguration
 from bench.config.reflected_load import load_current_a, torque_n_m_a
 from bench.config.rig import resolution_rad
-from bench.experiments.parts.reflected import Conveyed, reflection_of
+from bench.experiments.parts.pair_joints import Conveyed, reflection_of
 from bench.json_types import Value
 from compensator.reflection.reflection_quality import FloatArray, Swing, delay_s, drag, rise_s, swing, unexplained
 

@@ -1,6 +1,7 @@
 """A slave that follows its master while its load is reflected: the parts that a teleoperation is composed of."""
 
 from collections.abc import Generator
+from dataclasses import dataclass
 from math import ceil, nan
 from typing import Literal, NamedTuple, TypeVar
 
@@ -9,7 +10,6 @@ from bench.config.reflected_load import torque_n_m_a
 from bench.control.cycle import OFF, Action, PairAction, PairReading, Reach
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.load_follower import LoadFollower
-from bench.experiments.parts.reflected import Conveyed, reflection_of
 from compensator.reflection.reflection import Following, Reflection
 from drivers.contract import Command, Mode
 
@@ -19,6 +19,36 @@ PairPart = Generator[PairAction, PairReading, Result]
 
 MARGIN_RAD = 0.1  # of the slave's set points to its limits
 HELD = Action(OFF)
+
+
+@dataclass(frozen=True, slots=True)
+class Conveyed:
+    """One cycle of teleoperation.
+
+    Attributes:
+        reading: of both joints.
+        reflected_n_m: what the master's motor was asked to make of the load when this cycle began.
+    """
+
+    reading: PairReading
+    reflected_n_m: float
+
+
+def reflection_of(configuration: BenchConfiguration, force_scale: float, about_n_m: float = 0.0) -> Reflection:
+    """The law of reflection, as bench.toml has it.
+
+    Raises:
+        ConfigurationError: there is no master.
+    """
+    settings = configuration.require_master().reflection
+    return Reflection(
+        force_scale=force_scale,
+        torque_n_m=settings.torque_n_m,
+        slew_n_m_s=settings.slew_n_m_s,
+        damping_n_m_s_rad=settings.damping_n_m_s_rad,
+        period_s=configuration.control.period_s,
+        about_n_m=about_n_m,
+    )
 
 
 class Coupling(NamedTuple):

@@ -3,10 +3,9 @@
 It proposes and says why; it keeps nothing. What is outside physics is a question, never an answer.
 """
 
+from bench.recording_set.guess.assign import Said, read_said
 from bench.recording_set.guess.guess import Guess, Known, Taken, guess_mapping, mapping_text, rig_text
-from bench.recording_set.guess.said import Said, read_said
-from bench.recording_set.guess.sheets import read_sheets
-from bench.recording_set.guess.unknown import check_answered, guess_of, read_unknown
+from bench.recording_set.guess.unknown import check_answered, guess_of, read_sheets, read_unknown
 
 __all__ = [
     "Guess",

@@ -11,9 +11,8 @@ import tomli_w
 
 from bench.config.rig import Rig
 from bench.recording_set.formats.column_table import Columns
-from bench.recording_set.guess.assign import Assigned, assign
+from bench.recording_set.guess.assign import Assigned, Said, assign
 from bench.recording_set.guess.names import UNITS_OF
-from bench.recording_set.guess.said import Said
 from bench.recording_set.guess.units_told import Units
 from bench.recording_set.mapping import Column, Mapping
 from compensator.lab.recordings.recording import CHANNELS, FloatArray

@@ -7,13 +7,11 @@ from typing import Any
 from bench.config.configuration import BenchConfiguration
 from bench.control.drive_faults import DriveState
 from bench.runs.bench_control import BenchControl, Request, RunnerStatus
-from bench.runs.bench_process.calls import Calls
 from bench.runs.bench_process.child import MODULE, Child
 from bench.runs.bench_process.errors import BenchProcessError, NotBegunError
 from bench.runs.bench_process.messages import Call, Hello, Method
-from bench.runs.bench_process.mirror import Mirror
 from bench.runs.bench_process.stop_line import StopLine
-from bench.runs.bench_process.supervisor import Supervisor
+from bench.runs.bench_process.supervisor import Calls, Mirror, Supervisor
 from bench.runs.connection import Connection
 from bench.runs.live import LiveRows
 from bench.store import Store

@@ -3,18 +3,116 @@
 import logging
 import threading
 from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import replace
+from typing import Any
 
+from bench.config.channels import RECORDED
+from bench.config.sections import Limits
 from bench.errors import BusyError
 from bench.runs import event_log
-from bench.runs.bench_process.calls import Calls
+from bench.runs.bench_control import RunnerStatus
 from bench.runs.bench_process.child import Child
-from bench.runs.bench_process.errors import BenchProcessError
+from bench.runs.bench_process.errors import BenchProcessError, NotBegunError
 from bench.runs.bench_process.messages import Accepted, Failure, Reply, Seen, error_of
-from bench.runs.bench_process.mirror import Mirror
+from bench.runs.live import LiveBuffer
 from drivers.contract import Description
 
 HANGING_UP_S = 5.0  # from the first message that fails until its end is seen, on the busiest machine
 CLOSING_S = 100.0  # a process that has not ended by then is killed
+
+
+class Calls:
+    """Each has a number, and a future for what comes of it. Any thread may use it."""
+
+    def __init__(self) -> None:
+        self._open: dict[int, Future[Any]] = {}
+        self._accepted: set[int] = set()
+        self._number = 0
+        self._lock = threading.Lock()
+
+    def open(self) -> tuple[int, Future[Any]]:
+        """A new call."""
+        with self._lock:
+            self._number += 1
+            found = self._open[self._number] = Future()
+            return self._number, found
+
+    def accept(self, number: int) -> None:
+        """One has been begun."""
+        with self._lock:
+            self._accepted.add(number)
+
+    def close(self, reply: Reply | Failure) -> None:
+        """What came of one."""
+        found = self._pop(reply.number)
+        if found is None:
+            return
+        if isinstance(reply, Failure):
+            found.set_exception(error_of(reply))
+        else:
+            found.set_result(reply.value)
+
+    def forget(self, number: int) -> None:
+        """Nobody waits for it any more."""
+        self._pop(number)
+
+    def fail(self, said: BaseException | None, reason: str) -> None:
+        """No more replies will come: the process has ended."""
+        with self._lock:
+            left, accepted = dict(self._open), set(self._accepted)
+        for number in left:
+            if (found := self._pop(number)) is not None:
+                kind = BenchProcessError if number in accepted else NotBegunError
+                found.set_exception(said or kind(reason))
+
+    def _pop(self, number: int) -> "Future[Any] | None":
+        with self._lock:
+            self._accepted.discard(number)
+            return self._open.pop(number, None)
+
+
+class Mirror:
+    """Status and live rows, at most a publisher's period old."""
+
+    def __init__(self, limits: Limits) -> None:
+        self.status = RunnerStatus(None, "", "", "", 0, 0, 0.0, None, None, limits)
+        self.live = LiveBuffer(RECORDED)
+        self._busy = False
+        self._new_process = True
+        self._changed = threading.Condition()
+
+    def take_in(self, seen: Seen) -> None:
+        """The news."""
+        if seen.rows.restarted or (self._new_process and len(seen.rows.rows)):
+            self._new_process = False
+            rows = seen.rows
+            self.live.begin_trial(rows.channels, rows.trial_id, rows.trial_rows - len(rows.rows))
+        if len(seen.rows.rows):
+            self.live.append(seen.rows.rows)
+        self._change(seen.status, seen.busy)
+
+    def lose(self, reason: str) -> bool:
+        """The process has ended; True where that has interrupted an experiment. Nothing is free before `release`."""
+        running = self.status.outcome == "running"
+        self._new_process = True
+        ended = replace(self.status, outcome="interrupted", reason=reason, prompt=None) if running else self.status
+        self._change(ended, busy=self._busy)
+        return running
+
+    def release(self) -> None:
+        """Its records are in order: who waited may go on."""
+        self._change(self.status, busy=False)
+
+    def wait(self, timeout_s: float | None) -> bool:
+        """Wait until nothing runs; False where that takes longer than `timeout_s`."""
+        with self._changed:
+            return self._changed.wait_for(lambda: not self._busy, timeout_s)
+
+    def _change(self, status: RunnerStatus, busy: bool) -> None:
+        with self._changed:
+            self.status, self._busy = status, busy
+            self._changed.notify_all()
 
 
 class Supervisor:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from bench.config.rig import Rig
 from bench.report import Figure, Line, Section, html_page
 from bench.store import Store
 from bench.study.changes import add_effect
@@ -12,9 +13,8 @@ from bench.study.diagnosis.diagnose import diagnose
 from bench.study.diagnosis.search import search_and_diagnose
 from bench.study.errors import StudyError
 from bench.study.explanation.coverage import coverage
-from bench.study.explanation.never_slid import NeverSlidError, never_slid_page
 from bench.study.ladder import ladder
-from bench.study.material import model_of
+from bench.study.material import facts_of, model_of
 from bench.study.models.change import SearchStep
 from bench.study.models.comparison import Comparison
 from bench.study.models.coverage import Coverage
@@ -22,7 +22,6 @@ from bench.study.models.diagnosis import Diagnosis
 from bench.study.models.ladder import Ladder
 from bench.study.report.coverage_section import advice_section, coverage_section
 from bench.study.report.diagnosis_sections import diagnosis_section, provenance_section
-from bench.study.report.head_section import head_section, summary
 from bench.study.report.model_sections import (
     ladder_figure,
     ladder_section,
@@ -32,15 +31,47 @@ from bench.study.report.model_sections import (
     residual_section,
     worst_trial,
 )
+from bench.study.report.report import head_section, summary
 from bench.study.report.wording import in_words
 from compensator.lab.diagnosis.run_to_run import WEIGHT
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import NeverSlidesError
+from compensator.lab.recordings.effort import choose_effort
+from compensator.lab.recordings.facts import Effort, Facts
+from compensator.lab.recordings.recording import Recording
 
+MOST_TRIALS, MOST_POINTS = 6, 500  # of the picture
 MOST_CURVES = 2  # without physics: more would be a table of the recordings, and no explanation
 LEAST_GAIN = 0.02  # of the held-out error: for less nobody would read six more numbers
 STEPS = ("base model", "what the data can tell", "comparison", "diagnosis", "search", "report")
 Tell = Callable[[str, int], None]
+
+
+class NeverSlidError(StudyError):
+    """Raised when no model can be made, since the joint never slid; `html` is a report all the same."""
+
+    def __init__(self, sentence: str, html: str) -> None:
+        super().__init__(sentence)
+        self.html = html
+
+
+def never_slid_page(store: Store, experiment_id: int, name: str, sentence: str, came_in: Section | None = None) -> str:
+    """One HTML page."""
+    recordings = [store.recording(trial.id) for trial in store.trials(experiment_id)]
+    facts = facts_of(Rig.model_validate(store.experiment(experiment_id).rig))
+    told = Section("In short", [sentence], figures=[_loops(recordings, choose_effort(recordings, facts), facts)])
+    return html_page(f"What holds {name}", [told, *([came_in] if came_in else [])])
+
+
+def _loops(recordings: Sequence[Recording], effort: Effort, facts: Facts) -> Figure:
+    """Effort over position of the first trials: a spring's line, or the loop that friction makes of it."""
+    lines = []
+    for one in recordings[:MOST_TRIALS]:
+        step = max(1, len(one) // MOST_POINTS)
+        position = one.channels[f"position_{facts.position_unit}"][::step]
+        lines.append(Line(one.name, position.tolist(), effort.of(one)[::step].tolist()))
+    title = f"{effort.title} [{effort.unit}]"
+    return Figure("Effort over position", f"position [{facts.position_unit}]", title, lines)
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,14 @@ from threading import RLock
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import BRAKE, CURRENT, OFF, VOLTAGE, Axis, Demand, Device
-from sim_backend.devices.modbus.register_file import ILLEGAL_FUNCTION, ILLEGAL_VALUE, Refused, RegisterFile
-from sim_backend.devices.modbus.registers import Kind, Register
+from sim_backend.devices.modbus.register_file import (
+    ILLEGAL_FUNCTION,
+    ILLEGAL_VALUE,
+    Kind,
+    Refused,
+    Register,
+    RegisterFile,
+)
 from sim_backend.faults.script import tripped
 from sim_backend.plant.parameters import PlantParameters
 

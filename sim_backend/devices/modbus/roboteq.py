@@ -9,10 +9,12 @@ from sim_backend.devices.modbus.register_file import (
     ILLEGAL_ADDRESS,
     ILLEGAL_FUNCTION,
     ILLEGAL_VALUE,
+    Kind,
     Refused,
     Unanswered,
+    from_words,
+    to_words,
 )
-from sim_backend.devices.modbus.registers import Kind, from_words, to_words
 from sim_backend.faults.script import tripped
 from sim_backend.plant.parameters import PlantParameters
 

@@ -8,10 +8,9 @@ from typing import NamedTuple
 
 from drivers.contract import Sample
 from sim_backend.devices.axis import OFF, TICK_S, VOLTAGE, Axis, Demand, Device
-from sim_backend.devices.roboclaw.channel import FULL_DUTY, Channel, Counter
+from sim_backend.devices.roboclaw.channel import FULL_DUTY, WARM_C, Channel, Counter, Flag, Settings, flag_of
 from sim_backend.devices.roboclaw.commands import ACKNOWLEDGED, COMMANDS
 from sim_backend.devices.roboclaw.handlers import handlers_of
-from sim_backend.devices.roboclaw.memory import WARM_C, Flag, Settings, flag_of
 from sim_backend.plant.parameters import PlantParameters
 
 VERSION = b"USB Roboclaw 2x15a v4.1.34 simulated\n\0"  # so that no record of it is taken for one of hardware

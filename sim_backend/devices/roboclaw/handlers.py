@@ -4,8 +4,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from sim_backend.devices.roboclaw.channel import FULL_DUTY
-from sim_backend.devices.roboclaw.memory import Settings
+from sim_backend.devices.roboclaw.channel import FULL_DUTY, Settings
 
 if TYPE_CHECKING:
     from sim_backend.devices.roboclaw.device import RoboClaw
