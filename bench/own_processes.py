@@ -26,7 +26,6 @@ class OwnProcess:
 
     Attributes:
         what: the command, "friction-bench run steps".
-        bench: name of its bench.
         process_id: as the process itself sees it.
         url: of a service, as this machine reaches it; "" for a command.
         token: for that service, of this user.

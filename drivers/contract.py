@@ -49,8 +49,6 @@ class Command(NamedTuple):
     """One cycle's demand. The unit of the value follows the mode.
 
     Attributes:
-        mode: what the value means.
-        value: the demand.
         feed_forward_a: in POSITION, motor current that the drive adds to what its own position loop asks for [A]:
             where friction is compensated. Other modes ignore it.
     """
@@ -91,7 +89,6 @@ class Sample(NamedTuple):
         current_a: motor current measured by the drive [A]; NaN without a sensor.
         supply_v: supply voltage [V].
         temperature_c: temperature that the drive reports [deg C].
-        status: state of the power stage.
         ages: of each quantity.
         number: of the measurement since opening, where the drive is asked for each (CANopen: of the SYNC); two
             samples of one number are one measurement, handed over twice because the next one has not come in time.
@@ -140,8 +137,6 @@ class FoundTable:
     """What was found at connect, for a person to look through.
 
     Attributes:
-        title: what it is about.
-        columns: their headings.
         rows: one text a column.
     """
 
@@ -170,7 +165,6 @@ class Description:
     """Identity and capabilities of a drive, as found at connect.
 
     Attributes:
-        device: the name used in messages.
         vendor, product, firmware, serial: identity; empty where the drive does not tell.
         simulated: True where no hardware is behind it, by what the device says of itself.
         modes: the modes that the drive closes itself.

@@ -10,8 +10,6 @@ class Follower(Protocol):
 
     Attributes:
         wanted: what that program has to do, after "let the other program".
-        device: name used in messages.
-        product: what answers.
         is_between: whether what that program says goes through here; else the bus is shared.
     """
 

@@ -29,7 +29,6 @@ class ToldAtRest(NamedTuple):
     Attributes:
         settings: the corrections of eqs (9), (10); None where they did not tell.
         friction_a: F_load [A], without what a moment adds, under each load [kg].
-        trial_ids: what it is from.
         why_not: why there are no settings, in words.
     """
 

@@ -36,7 +36,6 @@ class Batch:
 
     Attributes:
         load_kg: balanced on the arm.
-        parameters: of a speed sweep.
         half_width_a: half of the 95 % interval of the load's curve where it is known least; inf before the first fit.
         duration_s: that it takes, roughly.
     """
@@ -52,7 +51,6 @@ class SequentialDesign:
     """What a calibration is to reach, and in which time.
 
     Attributes:
-        configuration: of the bench.
         loads_kg: under which a curve is measured, in the order they are hung.
         accuracy_a: half of the 95 % interval of each curve at its worst speed, at which it is known well enough.
         budget_s: time of the joint, shared out among the loads.

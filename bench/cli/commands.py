@@ -10,7 +10,6 @@ class CommandEntry(NamedTuple):
     """One command.
 
     Attributes:
-        name: as typed.
         place: `module:attribute` of a function, or of a `typer.Typer` with commands of its own.
         help: first paragraph of its own help; `tests/cli/test_commands.py` compares the two.
     """

@@ -28,11 +28,6 @@ GUESSED_GROWTH = 2.0  # of the inertia by the load, before torque per current is
 class BenchTable:
     """The configuration on its way.
 
-    Args:
-        name: of the bench.
-        drive: its section, as `drives scan` or a person has it.
-        travel_rad: how far the arm may turn to either side.
-
     Attributes:
         closes_current: whether the drive has a current mode.
         current_step_a: smallest step of the current that it measures [A]; 0 where it does not tell.

@@ -15,7 +15,6 @@ class Asked:
 
     Attributes:
         number: given back with the answer, so that an answer that comes late does not count for the next question.
-        key, sentence: of the question.
         question: what number is wanted; None where something is to be done.
     """
 

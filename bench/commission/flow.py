@@ -34,8 +34,6 @@ class Commissioned:
     """How it ended.
 
     Attributes:
-        bench: the configuration, commissioned.
-        known: what the person knew.
         first_kg, found_kg: the weight that was hung as a trial, and what the bench found; NaN where none was hung.
     """
 

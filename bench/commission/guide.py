@@ -35,7 +35,6 @@ class Course:
     Attributes:
         number: of those of this service, from 1.
         step: key of the step that it is at.
-        evidence: what was found so far.
         stopped: why it was stopped from outside; "" where it was not.
         refusal: why it did not get through, once that is so.
         ended: what came of it, once it got through.

@@ -51,12 +51,6 @@ class Motions:
     def run(self, bench: BenchConfiguration, kind: str, parameters: Values, hung: tuple[float, bool]) -> Experiment:
         """One experiment to its end; again where host or line was late, which says nothing of the joint.
 
-        Args:
-            bench: with what is known of the joint so far.
-            kind: of experiment.
-            parameters: of the kind.
-            hung: what hangs on the arm now.
-
         Raises:
             CommissionError: it did not complete, with the reason.
             BenchError, DriveError: it is refused, or the drive cannot be opened.

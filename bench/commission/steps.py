@@ -8,8 +8,6 @@ class Step:
     """One step.
 
     Attributes:
-        key: short name, for programs.
-        title: for people.
         moves: what moves, how far, and what stops it; of a step without power, what is done instead.
         low_rad, high_rad: where the arm may get to by the motor; both 0 where nothing is powered.
     """

@@ -17,8 +17,6 @@ class Channel:
     Attributes:
         name: ends in the unit; the column's name in store, export and interface.
         unit: SI, angles in rad, temperatures in degC; "1" where there is none.
-        label: short, for plots and messages.
-        description: one line.
         read: what of a control cycle it is, a path among `bench.control.cycle.VALUES`; of a pair, among
             `bench.control.pairs.pair.PAIR_VALUES`.
         plotted: whether a plot of the trial shows it unless asked otherwise.

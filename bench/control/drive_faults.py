@@ -18,7 +18,6 @@ class DriveState:
 
     Attributes:
         joint: "joint"; "slave" and "master" of a pair.
-        device: the name used in messages.
         state: of the power stage; "" where it has no word for it.
         fault: in words; "" where it reports none.
         torque_off: what says that safe torque off is active; "" where nothing does.
@@ -44,10 +43,6 @@ def read_drives(configuration: BenchConfiguration) -> tuple[DriveState, ...]:
 
 def clear_faults(configuration: BenchConfiguration, shown: str) -> tuple[DriveState, ...]:
     """Clear the faults of every drive of the bench that has one, and ask again.
-
-    Args:
-        configuration: of the bench.
-        shown: the faults that a person has seen, as `faults_in_words` has them.
 
     Raises:
         FaultChangedError: they are others by now; nothing was cleared.

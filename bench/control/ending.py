@@ -31,7 +31,6 @@ class Outcome:
     Attributes:
         outcome: one of `OutcomeName`.
         reason: why, in words; empty when completed.
-        results: what the procedure returned.
         cycles: control cycles run.
         overruns: cycles lost because the host was late.
     """

@@ -31,9 +31,6 @@ class ControlledJoint:
         brake: the joint's holding brake; None where it has none, or is not to touch it.
 
     Attributes:
-        drive, brake: as given.
-        action: of this cycle.
-        reading: the last one.
         demanded: mode of the last command that the power stage was switched for.
         prefix: the name, as messages begin with it.
     """

@@ -44,7 +44,6 @@ class ControlLoop(Generic[ActionT, ReadingT]):
         period_s: control period [s], as the drives were opened with.
 
     Attributes:
-        cycles: of the trial.
         last_reading: of the last joint; None before the first.
     """
 

@@ -26,12 +26,7 @@ class Sink(Protocol):
 
 
 class RowBuffer:
-    """Rows of one length, packed as they come: half the work of an array made of tuples later.
-
-    Args:
-        width: values in a row.
-        rows: how many to make room for at a time.
-    """
+    """Rows of one length, packed as they come: half the work of an array made of tuples later."""
 
     def __init__(self, width: int, rows: int) -> None:
         self._width, self._more = width, rows

@@ -28,9 +28,7 @@ class _Way(NamedTuple):
     """A way to come before other programs; both functions take a thread's number (Linux).
 
     Attributes:
-        name: for the record.
         take: raises `OSError` where that is not permitted.
-        give_back: what was before.
     """
 
     name: str

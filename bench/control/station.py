@@ -31,7 +31,6 @@ class Station:
         benches: of each drive, the joint as a bench of its own; the first one's period and servo count.
         names: of each joint, as messages say it; "" where there is one only.
         group: makes the loop's joints of those, in the order of `drives`.
-        clock: paces the loop.
         prepare: puts on the arm what a trial wants there, with the power off: load_kg, balanced, wall_rad. Raises
             `ExperimentError` where it is not there.
         assume: tells what hangs there already (load_kg, balanced): nobody is asked for it.

@@ -111,11 +111,6 @@ def start_early(module: str, workers: int | None = None, cluster: str | None = N
     """Have another process import what the work needs, while this one reads the first items.
 
     Workers are forks of it, so that all of them together import once. `over_cores` does so by itself, but later.
-
-    Args:
-        module: of the work; this process need not have imported it yet.
-        workers: as `over_cores` will get them.
-        cluster: likewise.
     """
     if cluster is None and _count(workers) > 1:
         _FORKS.set_forkserver_preload([module])

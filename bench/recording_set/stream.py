@@ -35,7 +35,6 @@ class RecordingStream:
     Attributes:
         trial_id: in the store; None where it comes from elsewhere.
         channels: names, in the order of the columns.
-        rows: how many there are.
         events: in order of time.
         read: called with the first row and how many; columns of all channels, shape (channels, up to as many).
     """

@@ -16,7 +16,6 @@ class Unit:
     """A unit: SI value = factor x value + offset.
 
     Attributes:
-        name: as it is written here.
         si: the SI unit, as in the table of channels.
         factor, offset: to SI.
         counts: the factor is to be multiplied by the turn of one count of the sensor.

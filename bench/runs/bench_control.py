@@ -47,13 +47,9 @@ class RunnerStatus:
         experiment_id: None before the first experiment.
         kind: "" before the first experiment.
         outcome: "running" while it runs; "" before the first.
-        reason: why it ended.
         trial_index: the trial that runs, from 0.
-        trial_count: trials of the experiment.
         progress: share that is done, 0 .. 1.
-        reading: the last one.
         description: the drive, once it has been opened.
-        limits: of the bench.
         prompt: what the person at the bench is asked to do before it goes on; the power is off meanwhile.
         pausing: "asked": it will stand still after the trial that runs; "paused": it does, with the power off.
         duration_s: estimate of the whole, in the joint's time.

@@ -28,16 +28,11 @@ class Task:
 
     Attributes:
         number: of those of this service, from 1.
-        wish: what was asked for.
-        note: kept with its records.
         stand: how far it was before the experiment that runs.
-        calibration: the experiments.
         paused: whether somebody has asked for a pause.
         waits: whether it stands still between two experiments for it.
-        fitting: whether all is measured.
         stopped: why it was stopped from outside; "" where it was not.
         reason: why it ended without a calibration.
-        calibration_id: what came of it.
     """
 
     number: int
@@ -105,11 +100,6 @@ class Calibrator:
 
     def begin(self, wish: Wish, before: Sequence[int] = (), note: str = "") -> int:
         """Begin one: the joint moves. Returns its number.
-
-        Args:
-            wish: what it is to reach.
-            before: records of one that was broken off, which count along.
-            note: kept with its records.
 
         Raises:
             BusyError: another one is under way, or an experiment runs.

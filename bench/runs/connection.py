@@ -19,8 +19,6 @@ class Connection:
     """A drive as it was found.
 
     Attributes:
-        description: identity and capabilities.
-        sample: the last one.
         period_s: control period that was asked for [s].
         rate_hz: cycles a second that were reached at that period.
         exchange_s: median time of one exchange [s].

@@ -65,12 +65,10 @@ class ExperimentRun:
     """One experiment, from the request to the end of its record.
 
     Attributes:
-        request: what was asked for.
         experiment_id: of its record, once there is one.
         outcome, reason: "running" until the record is closed.
         trial_index: the trial that runs, from 0.
         paused: whether it stands between two trials, with the power off, until it may go on.
-        stop_request: the wish that it ends.
     """
 
     request: Request

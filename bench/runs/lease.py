@@ -34,7 +34,6 @@ class Held:
     """The lease as it is now.
 
     Attributes:
-        token: name of the holder's token.
         holder: how the holder wants to be called; else the token's name.
         remaining_s: unless it is renewed; None: it lasts as long as the experiment that runs.
     """

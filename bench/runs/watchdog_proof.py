@@ -43,7 +43,6 @@ class WatchdogProof:
 
     Attributes:
         watchdog: PROVEN; NONE where the output went on; CONFIGURED where neither state nor output could tell.
-        sentence: what was found.
         is_admitted: whether the drive says itself that it has none.
     """
 

@@ -24,14 +24,7 @@ RELOADED_S = 1.5  # a page that is loaded anew asks for the same again: what wou
 
 
 async def in_worker(request: Request, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-    """Run a long computation in a thread; at most two at a time, further ones wait their turn.
-
-    Args:
-        request: the request that asked for it; its application holds the limiter.
-        function: what to run; it must not touch the event loop.
-        *args: passed on.
-        **kwargs: passed on.
-    """
+    """Run a long computation in a thread, off the event loop; at most two at a time, further ones wait their turn."""
     limiter: anyio.CapacityLimiter = request.app.state.compute_limiter
     return await anyio.to_thread.run_sync(lambda: function(*args, **kwargs), limiter=limiter)
 

@@ -145,13 +145,6 @@ def serve_bench(
 ) -> None:
     """Serve until a signal comes.
 
-    Args:
-        configuration: of the bench and its store.
-        address: where to listen.
-        make_app: makes the application that is served.
-        say: shows a line to whoever started it.
-        tls: certificate and key; without them the service speaks plain HTTP.
-
     Raises:
         ConfigurationError: an address that may not or cannot be listened on, or a token that cannot be used.
     """

@@ -81,7 +81,6 @@ class Trial:
     Attributes:
         conditions: what was held constant; the keys carry units.
         channels: names of the recorded channels (`bench.config.channels`).
-        rows: committed rows.
         outcome: one of `OUTCOMES`; `reason` says why.
     """
 

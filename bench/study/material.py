@@ -71,9 +71,7 @@ class Material:
     """A study with its trials, ready to be fitted.
 
     Attributes:
-        study_id, name, definition: as stored.
         trials: of the study, in order.
-        dataset: their rows.
         source: equal where the recordings are the same ones of the same store; None where they are from none.
     """
 
@@ -206,15 +204,7 @@ def trials_of(model: ModelRow, definition: Definition) -> Definition:
 def material_of(
     store: Store, study_id: int, name: str, definition: Definition, read: dict[int, Recording] | None = None
 ) -> Material:
-    """The material of a definition, whether it is kept already or not. Errors as `load`.
-
-    Args:
-        store: with the trials.
-        study_id: of the material.
-        name: of the study.
-        definition: of the study.
-        read: recordings by trial that were read just now; emptied.
-    """
+    """The material of a definition, whether it is kept already or not. Errors as `load`."""
     trials = tuple(store.trials_of(definition.trial_ids))
     source = _Source(store, definition.trial_ids, read)
     return Material(study_id, name, definition, trials, _dataset(source, definition), source)

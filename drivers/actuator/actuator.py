@@ -13,7 +13,6 @@ class Actuator(Protocol):
     """A connected actuator. Each call raises `DriveConnectionError` where it is not answered in time.
 
     Attributes:
-        identity: who answers.
         notes: what the user should know, a sentence each.
         bus: that it is on, and others may be.
     """

@@ -20,8 +20,6 @@ class Family:
     """What is known of a kind of actuator before it is opened.
 
     Attributes:
-        device: name used in messages.
-        vendor: who makes it.
         modes: that it has at most; which of them, it says itself.
         watchdog: what the maker calls it; "" where there is none.
         watchdog_s: silence after which it stops by itself [s]; None: it never does.

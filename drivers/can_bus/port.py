@@ -19,7 +19,6 @@ class Heard(NamedTuple):
     """The last frame of an identifier, and how many there were.
 
     Attributes:
-        data: of the frame.
         at_s: when it came, of `perf_counter` [s].
         number: how many have come.
         can_id: its identifier with the bits that say a state.

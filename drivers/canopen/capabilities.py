@@ -24,12 +24,9 @@ class Capabilities:
     """What was found.
 
     Attributes:
-        identity: of the drive.
-        profile: chosen for it.
         present: optional objects that it has.
         current: the object that tells the motor current; None where there is none.
         modes: the code of 0x6060 for each mode.
-        scale: of drive and joint.
         units: by the drive and by the configuration.
         told_counts: encoder counts of a motor turn, by the drive; NaN where it tells none.
         no_homing: why it does not home by itself; "" where it does.

@@ -28,7 +28,6 @@ class CanopenDrive:
     """One drive on a CAN bus. The caller's thread owns the bus; there is no other.
 
     Attributes:
-        settings: as given.
         port: the bus; another drive's where both are on one, see `share_buses`.
         highest_speed_rad_s: of the joint; from there the drive's own quick stop has to end soon [rad/s].
     """

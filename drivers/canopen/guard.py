@@ -49,7 +49,6 @@ class Reaction:
 
     Attributes:
         told: whether the drive's dictionary says it.
-        words: for messages.
     """
 
     told: bool
@@ -59,16 +58,7 @@ class Reaction:
 class Guard:
     """The watchdog of one drive. It watches only while the power is to be on: with the power off nobody has to call.
 
-    Args:
-        table: of the drive's objects.
-        link: open.
-        settings: its time-out.
-        host_id: node ID of this host.
-        quick_stop_ends: whether a quick stop that nobody watches ends soon in power-off.
-
     Attributes:
-        kind: how the drive notices.
-        armed: whether it watches now.
         tried: whether it has been seen to stop the drive since opening.
     """
 

@@ -16,7 +16,6 @@ class CanopenSettings(CanopenParameters):
     """One CANopen drive on its bus.
 
     Attributes:
-        bus: how the bus is reached.
         brake: the output that this host sets the holding brake by; None where it sets none.
         homing: how the drive homes by itself; None where it is not to.
 

@@ -43,12 +43,6 @@ _LAYOUT = Struct("<hhii8xHB")
 class DynamixelActuator(ServoActuator):
     """A servo, opened: off, its watchdog set.
 
-    Args:
-        bus: open.
-        leave: called when the servo is closed; gives the bus back.
-        settings: which servo.
-        joint: scales and signs.
-
     Raises:
         DriveError: at the first step that fails.
     """

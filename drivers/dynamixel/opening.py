@@ -25,7 +25,6 @@ class Model(NamedTuple):
     """What differs from model to model.
 
     Attributes:
-        name: of the model.
         current_a: step of Present Current and Goal Current [A]; None where it measures no current.
         indirect_moves: whether firmware 52 and later have the indirect data elsewhere.
     """

@@ -33,12 +33,6 @@ _OPENING_QUESTIONS = 10
 class FeetechActuator(ServoActuator):
     """A servo, opened: off, its torque limited.
 
-    Args:
-        bus: open.
-        settings: which servo.
-        joint: scales and signs.
-        leave: called when the servo is closed; gives the bus back.
-
     Raises:
         DriveError: at the first step that fails.
     """

@@ -35,10 +35,9 @@ _REFUSALS = {
 
 
 class QuickSerialClient(ModbusSerialClient):
-    """pymodbus' own client looks for bytes once a millisecond, twice for each answer; this one waits for whole answers.
+    """pymodbus' own client looks for bytes once a millisecond, twice for each answer.
 
-    Args:
-        settings: port, baud rate, time limit, local echo.
+    This one waits for whole answers.
     """
 
     def __init__(self, settings: ModbusSettings) -> None:

@@ -42,13 +42,7 @@ class Demand:
 
 
 def state_of(register_map: RegisterMap, values: Values, told: Status) -> Status:
-    """The state.
-
-    Args:
-        register_map: of the drive.
-        values: as read, by register name.
-        told: the state that the drive was last told to be in.
-    """
+    """The state."""
     if register_map.fault is not None and values[register_map.fault.name] != 0.0:
         return Status.FAULT
     if register_map.status is None:

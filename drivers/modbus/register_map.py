@@ -35,8 +35,6 @@ class Words:
     """A register, and which word in it means what.
 
     Attributes:
-        register: where the word is.
-        words: by meaning.
         mask: bits of the register that belong to the word.
         bits: True where several may hold at once: each is a bit, or some.
     """
@@ -78,7 +76,6 @@ class Identity:
     """Who the drive is.
 
     Attributes:
-        vendor, product: as shown.
         firmware, serial: registers; None where it does not tell.
         family: register and word by which the map and the drive recognise each other; None: not checked.
         product_text: what it calls itself, in place of `product`; None where it does not tell.
@@ -97,9 +94,7 @@ class RegisterMap:
     """A family of drives.
 
     Attributes:
-        name: of the family.
         source: where the register table was published.
-        identity, control, mode, status, fault, watchdog: see the module.
         demand: register of each mode's demand.
         measured: registers by quantity.
         read_write: whether one request may write and read (function 23).

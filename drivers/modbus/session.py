@@ -82,7 +82,6 @@ class Session:
 
     Attributes:
         told: the state that the drive was last told to be in.
-        state: what it says it is.
 
     Raises:
         DriveError: at the first step that fails. The drive is off then where it can be told, and the port is free.

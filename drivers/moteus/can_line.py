@@ -18,10 +18,6 @@ _LONGEST_PLAIN = 0x7FF  # of identifiers of 11 bits
 class MoteusCanLine:
     """An open bus.
 
-    Args:
-        settings: how it is reached.
-        timeout_s: longest wait for the answers of one exchange [s].
-
     Raises:
         DriveConnectionError: it is not there, or does not open.
     """

@@ -20,10 +20,6 @@ _TRIES_TOGETHER = 3
 class Motor:
     """The duty of a motor.
 
-    Args:
-        link: open.
-        settings: which motor.
-
     Attributes:
         counts: the duty that was told last [1/32767].
     """

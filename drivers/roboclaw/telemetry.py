@@ -110,11 +110,6 @@ class EncoderCount:
 class Telemetry:
     """Asks, scales and keeps what was asked for last. Probes at once what the controller measures.
 
-    Args:
-        link: open.
-        settings: which motor, and how often to ask for what.
-        joint: scales and signs.
-
     Raises:
         DriveConnectionError: the encoder, the applied PWM or the status is not answered.
     """

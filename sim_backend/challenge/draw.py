@@ -35,7 +35,6 @@ class DrawnPlant:
 
     Attributes:
         joint: drawn, nothing hidden in it.
-        hidden: what is.
         sheet: how far the owner's value of a quantity is from the true one, as a share of it.
     """
 

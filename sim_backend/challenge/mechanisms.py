@@ -17,10 +17,8 @@ class Mechanism:
 
     Attributes:
         name: of the component or parameter that makes it.
-        title: in words.
         size: what it is drawn from, log spread.
         measure: what the size is, in words.
-        make: its plant tables.
         current: whether the drive has to measure its current (True), must not (False), or either (None), so that the
             mechanism shows at all.
     """

@@ -14,7 +14,6 @@ class Range:
     Attributes:
         low, high: its ends, in `unit`.
         unit: SI; "1" for a plain number.
-        reason: why these ends.
         spread: "even", or "log" where the ends are far apart.
     """
 

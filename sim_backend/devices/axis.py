@@ -56,11 +56,6 @@ class Axis:
     Time is the axis' own, from 0; whoever owns the axis says how far it has come. A fault of the script that switches
     a drive off, or an open safe-torque-off circuit, opens the stage whatever the law demands.
 
-    Args:
-        parameters: the joint, and what the device measures of it.
-        law: of the device.
-        seed: of the plant's own randomness.
-
     Attributes:
         zero_counts: count that the encoder would show at the 0 of now, had it never begun anew.
     """

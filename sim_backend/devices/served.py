@@ -17,7 +17,6 @@ class Served:
 
     Attributes:
         link: symbolic link to put on the pseudo-terminal; None: none.
-        preset: of the joint behind each.
         plant: tables that differ from it.
         seed: of the first joint; the others have the next ones.
         side_port: TCP port of the side channel; 0 is any free one.

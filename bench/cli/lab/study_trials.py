@@ -88,7 +88,6 @@ class _Running:
     """Rounds on this bench.
 
     Attributes:
-        rounds: one after the other.
         signal_code: exit code where a signal ended a trial.
     """
 

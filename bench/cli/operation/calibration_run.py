@@ -16,17 +16,7 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
 
 
 class CalibrationRun:
-    """One calibration on its way.
-
-    Args:
-        session: of the command.
-        store: open.
-        wish: what was asked for.
-        before: records of a calibration that was broken off, which count along.
-        pace, note: of each experiment.
-        again: the options that were given, to go on with.
-        quiet: say nothing.
-    """
+    """One calibration on its way."""
 
     def __init__(
         self,

@@ -32,7 +32,6 @@ class Answered(NamedTuple):
 
     Attributes:
         who: the service or the command, with its bench.
-        detail: in words.
         was_running: whether it moved a joint; None where it was not reached.
     """
 

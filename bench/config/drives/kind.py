@@ -108,7 +108,6 @@ class DriveKind(Generic[SettingsT]):
     """A kind of drive. Its functions import what they need themselves: a bench needs no library of another kind.
 
     Attributes:
-        title: of the family, for people.
         settings: the `[drive]` section; its `kind` is a `Literal` with the name of the kind.
         make: makes the drive, not yet open, of the section and the rig. Raises `ConfigurationError`.
         simulate: imports the function behind `friction-bench simulate-device KIND`; None where there is no device.

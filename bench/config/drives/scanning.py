@@ -24,8 +24,6 @@ class CanPlace:
     """A CAN bus to be looked at.
 
     Attributes:
-        interface: of python-can.
-        channel: of that interface.
         bitrate: of the bus [bit/s].
         is_fd: whether every node on it knows CAN-FD.
     """
@@ -41,7 +39,6 @@ class FoundDrive:
     """What answers.
 
     Attributes:
-        title: for people.
         drive: `[drive]` of bench.toml that reaches it.
     """
 

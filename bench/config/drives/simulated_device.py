@@ -33,8 +33,6 @@ class Simulated:
     """A device that was started.
 
     Attributes:
-        device: at work.
-        title: for people.
         drive: `[drive]` of bench.toml that reaches it; `side_channel` is added to it.
     """
 

@@ -24,7 +24,6 @@ class Brake:
     """The brake of one joint.
 
     Attributes:
-        settings: of the brake.
         is_released: whether it was told to be.
         wanted: what the joint was asked for when the watch over it began.
 

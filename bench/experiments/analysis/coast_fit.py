@@ -19,7 +19,6 @@ class CoastFit:
         dry_deceleration_rad_s2: a; NaN where there are too few readings.
         time_constant_s: T; NaN where the joint does not slow down more at speed.
         rms_rad: of position against that law.
-        readings: that were used.
     """
 
     dry_deceleration_rad_s2: float

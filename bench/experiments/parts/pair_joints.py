@@ -26,7 +26,6 @@ class Conveyed:
     """One cycle of teleoperation.
 
     Attributes:
-        reading: of both joints.
         reflected_n_m: what the master's motor was asked to make of the load when this cycle began.
     """
 
@@ -55,7 +54,6 @@ class Coupling(NamedTuple):
     """How the two are coupled.
 
     Attributes:
-        way: what is reflected.
         force_scale, motion_scale: torque of the master per torque of the slave; way of the slave per way of the master.
     """
 

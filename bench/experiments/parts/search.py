@@ -53,7 +53,6 @@ class Search(Generic[StateT]):
 
     Attributes:
         finished: True when it ended, with or without an estimate.
-        phase: where it is, in words.
     """
 
     def __init__(

@@ -36,9 +36,7 @@ class StrokeSettings:
     """How every stroke is run.
 
     Attributes:
-        low_rad, high_rad: ends of the travel.
         top_speed_rad_s: fastest run-up; holding ends, and braking begins, a tenth above it.
-        acceleration_rad_s2: of run-up and braking.
         hold_s: longest time that is held.
         window_s: shortest window that is measured.
     """

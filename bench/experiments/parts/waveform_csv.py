@@ -23,7 +23,6 @@ class Waveform:
     """What the file says.
 
     Attributes:
-        quantity: what is played.
         time_s: rising, from 0, shape (n,).
         values: shape (n,).
     """

@@ -31,8 +31,6 @@ class Said:
     """What a user says of a column.
 
     Attributes:
-        column: its name.
-        quantity: or IGNORE.
         unit: None where none is said.
         sign_from: column whose sign it takes, where it is a magnitude.
     """
@@ -76,9 +74,7 @@ class Assigned:
     """Which column is which quantity.
 
     Attributes:
-        names: of all columns.
         columns: quantity -> names of the columns; of a time in two columns, both.
-        readings: of every name.
         said: what a user says, by name.
         unused: column -> why it is not used.
         questions: where several columns are equally good.

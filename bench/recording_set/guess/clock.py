@@ -26,8 +26,6 @@ class Clock:
         time_s: of each file, from its own start; None where it is not known.
         stamps: what is done about times that do not rise.
         why: column -> why it has its unit.
-        questions: what has to be asked.
-        notes: what was found.
     """
 
     column: Column | None = None
@@ -39,13 +37,7 @@ class Clock:
 
 
 def clock_of(files: Sequence[Columns], assigned: Assigned, rate_hz: float | None) -> Clock:
-    """The time of some files.
-
-    Args:
-        files: their columns.
-        assigned: which column is which quantity.
-        rate_hz: of the samples, where no column is a time.
-    """
+    """The time of some files."""
     clock = Clock()
     names = assigned.columns.get("time")
     if names is None:

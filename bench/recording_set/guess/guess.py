@@ -74,11 +74,8 @@ class Taken:
     """What a column is taken for.
 
     Attributes:
-        column: its name.
         channel: of the recording; "" where it is not used.
-        unit: of the column.
         low, high: of its values, in that unit; None of text.
-        why: in words.
         outline: some of its values over time, in that unit; empty of text.
     """
 
@@ -97,11 +94,8 @@ class Guess:
 
     Attributes:
         mapping: as far as it is known; complete where nothing is asked.
-        joint: as the units say.
         taken: every column, in the order of the file.
         questions: what a person has to say first; each names its option.
-        notes: what was found besides.
-        files: that hold a trial each.
         places: of the files that were looked at, as their user knows them.
     """
 
@@ -119,11 +113,8 @@ class Known:
     """What a user tells of files besides their columns.
 
     Attributes:
-        said: of columns, by name.
-        counts_per_turn: of the joint.
         rate_hz: of the samples, where no column is a time.
         supply_v: where no column holds it.
-        gear_ratio: of the rig.
     """
 
     said: MappingOf[str, Said]

@@ -37,18 +37,9 @@ AGREE = 1.5  # factor between the rate of a position and a speed: more is anothe
 class Units:
     """The units of the columns that were assigned.
 
-    Args:
-        files: their columns.
-        assigned: which column is which quantity.
-        counts_per_turn: of the joint, where it is known.
-        rate_hz: of the samples, where no column is a time.
-        gear_ratio: of the rig, where it is known.
-
     Attributes:
-        clock: the time.
         joint: "rotary" or "linear".
         questions: what has to be asked; each names its option.
-        notes: what was found besides.
         why: column -> why it has its unit, in words.
         gear: ratio of the gear in front of which the speed is, of the motor; None where it is that of the joint.
     """

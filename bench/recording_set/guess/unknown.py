@@ -76,11 +76,6 @@ def _trials_columns(container: Container) -> dict[str, str | Renamed]:
 def guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Guess, Rig, tuple[str, ...]]:
     """What the columns of files may be, the rig that is assumed, and how the files were read.
 
-    Args:
-        paths: a folder, a zip, or files.
-        rig: of the joint, where it is known; a set may bring one.
-        known: what a user tells.
-
     Raises:
         RecordingSetError: a file that cannot be read, or a column that is not there.
     """

@@ -28,7 +28,6 @@ class Chunk:
 
     Attributes:
         place: the file as its user knows it.
-        delimiter: between columns.
         first_line: the line of the file in which it begins, from 1.
         text: as it stands in the file.
         header: of the table; lines that repeat it are left out, and so are remarks.
@@ -102,9 +101,6 @@ class Table:
         numeric: its lines are numbers, for the most part; a preface may stand above the header then.
 
     Attributes:
-        header: names of the columns.
-        dialect: how it is written.
-        header_line: the line of the names.
         rate_hz: what the preface says of the sampling; None where it says nothing.
         told: what was told by the file, in words, and is not as a recording set has it; "" where nothing is.
 

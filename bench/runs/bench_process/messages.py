@@ -33,9 +33,6 @@ class Call:
     """The service: call a method of the runner.
 
     Attributes:
-        number: comes back with the reply.
-        method: of the runner.
-        arguments: in their order.
         stops: how often STOP had been asked for before the call.
     """
 
@@ -71,8 +68,6 @@ class Failure:
 
     Attributes:
         number: of the call; 0: the bench process cannot begin, and ends.
-        kind: class of the error.
-        text: what it says.
         attributes: of the error; those that can be sent.
         trace: where it was raised, for the log.
     """
@@ -89,7 +84,6 @@ class Seen:
     """The bench process, many times a second while it runs something.
 
     Attributes:
-        status: of the runner.
         busy: whether something runs; it goes on for a moment after the outcome is known.
         rows: recorded since the message before.
     """

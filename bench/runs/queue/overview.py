@@ -21,12 +21,9 @@ class QueueState:
         state: "idle": nothing waits; "running"; "pausing": it stands still after the trial that runs; "paused": it does
             so, within an experiment; "held": nothing is started until somebody resumes.
         reason: why it is held or paused; or which item another process runs, that this one waits for.
-        running: the item whose experiment runs.
         waiting: a page of what waits, in order.
-        waiting_count: how many wait in all.
         next_offset: of the next page; None on the last.
         duration_s: estimate of all of them, in the joint's time, hanging of loads included.
-        left_s: what is left of that.
         load_changes: how often something has to be hung yet.
         ended: what came out last, newest first.
     """

@@ -32,10 +32,8 @@ class Access:
     """What the service lets pass.
 
     Attributes:
-        tokens: whose token is whose.
         reads_open: True where reading needs no token (loopback only).
         hosts: host names under which the service may be addressed.
-        attempts: wrong tokens so far.
         strangers: requests without a token so far.
     """
 

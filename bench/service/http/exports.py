@@ -26,7 +26,6 @@ class Export:
 
     Attributes:
         content: a file, or pieces that are made one after the other.
-        media_type: of it.
         headers: beside `Content-Disposition`.
         name: of the file, for whoever keeps it.
         done: removes what is not needed once it has been sent, or given up.
@@ -68,10 +67,6 @@ class Exports:
 
 async def export(request: Request, write: Callable[[], Export]) -> Response:
     """Write an export in a thread, and answer with it.
-
-    Args:
-        request: that asked for it.
-        write: makes it; what it raises is answered as elsewhere.
 
     Raises:
         HTTPException: 503, too many are under way.

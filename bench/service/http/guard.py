@@ -20,12 +20,7 @@ SECURITY_HEADERS = {
 
 
 class Guard:
-    """ASGI middleware: checks Host and Origin, adds the security headers.
-
-    Args:
-        app: what it stands in front of.
-        hosts: host names under which the service may be addressed (without port).
-    """
+    """ASGI middleware: checks Host and Origin, adds the security headers."""
 
     def __init__(self, app: ASGIApp, hosts: frozenset[str]) -> None:
         self._app = app

@@ -62,11 +62,6 @@ class GapError(Exception):
 def missed(store: Store, mark: Mark, now: LiveRows) -> list[Piece]:
     """The rows between a mark and those that are live, oldest first.
 
-    Args:
-        store: every row is in it before it is live.
-        mark: what was heard last.
-        now: the newest live row.
-
     Raises:
         GapError: there is no telling, too many, or they were removed.
     """

@@ -21,8 +21,6 @@ class AuditEntry:
         role: of the token; "" likewise.
         client: network address it came from; "" for the command line.
         method, path: of the request, without its query.
-        status: what was answered.
-        detail: what was changed, in words.
     """
 
     at_utc: datetime

@@ -42,7 +42,6 @@ class Subject:
     """A kind of record.
 
     Attributes:
-        table: whose rows these are.
         parts: tables whose rows belong to it, each with the column that names it and those that order them.
     """
 

@@ -15,7 +15,6 @@ class Day:
     """What was begun on one day.
 
     Attributes:
-        day: the date.
         experiments, trials: how many; a trial belongs to the day on which its experiment was begun.
         not_completed: trials that ended otherwise, or still run.
     """

@@ -31,7 +31,6 @@ class NewLabItem(Asked):
     """An experiment for a bench of the laboratory.
 
     Attributes:
-        asked_by: who asks for it.
         for_bench, for_rig: name of the bench, of its rig; "": any.
         for_tags: what a bench has to have among the `lab_tags` of its configuration.
     """
@@ -62,9 +61,7 @@ class LabItem(NewLabItem):
 
     Attributes:
         state: "waiting"; "taken" by a bench that has not begun; "running"; or the outcome of its experiment.
-        reason: why it ended.
         bench: that has it or had it; "" where none has.
-        claim: what that bench was given.
         origin_id: of the experiment, in the store of that bench.
         declined: by bench, why it does not take it.
         silent_s: since its bench last said that it has it [s]; None where none has.

@@ -38,7 +38,6 @@ class NewItem(Asked):
     """An experiment to come on a bench.
 
     Attributes:
-        duration_s: estimate.
         loads: [load_kg, balanced] of its trials, one entry where the next trials have the same.
         lab_claim: of one that was taken from the laboratory's queue.
     """
@@ -53,10 +52,8 @@ class QueueItem(NewItem):
     """An experiment in the queue, or one that came out of it.
 
     Attributes:
-        id: of the item.
         campaign_id: that it belongs to; None for a single one.
         state: "waiting", "running", or the outcome of its experiment.
-        reason: why it ended.
         experiment_id: of its record, once there is one.
     """
 

@@ -20,7 +20,6 @@ class StartKey:
     Attributes:
         body_digest: of what it was asked with.
         status: of the answer; None while there is none yet.
-        answer: its body.
     """
 
     body_digest: str

@@ -35,13 +35,7 @@ class _Origin:
 
 
 class HandIn:
-    """From one bench to the laboratory.
-
-    Args:
-        bench: database of the bench.
-        lab: that of the laboratory.
-        name: of the bench; the laboratory knows its experiments by it.
-    """
+    """From one bench to the laboratory."""
 
     def __init__(self, bench: Database, lab: Database, name: str) -> None:
         self._bench, self._lab, self._name = bench, lab, name

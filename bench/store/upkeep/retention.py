@@ -22,7 +22,6 @@ class Policy:
         completed_days: those that completed, imports too.
         incomplete_days: those that were stopped, tripped, failed, interrupted or refused.
         simulated_days: those of a simulated drive, however they ended.
-        audit_days: entries of the audit log.
     """
 
     completed_days: float | None = None
@@ -42,7 +41,6 @@ class Expired:
     """An experiment that the policy does not keep.
 
     Attributes:
-        size_bytes: of its samples.
         used_by: the studies and calibrations that use it, in words; empty where nobody does.
     """
 

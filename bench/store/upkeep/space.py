@@ -15,7 +15,6 @@ class SpaceNeed:
     """What one trial takes.
 
     Attributes:
-        trial_bytes: of one trial.
         reserve_bytes: what has to stay free.
         told: how it was reckoned, in words.
     """

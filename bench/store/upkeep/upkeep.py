@@ -101,7 +101,6 @@ class StoreInfo:
 
     Attributes:
         where: the database; without password.
-        schema: its revision.
         size_bytes: of the database, with its log.
         free_bytes: on its disk; None where that is another machine's.
         oldest_utc: when the first of its experiments began.

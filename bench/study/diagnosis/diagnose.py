@@ -118,14 +118,7 @@ def _class(members: tuple[str, ...]) -> EffectClass:
 
 
 def _ranking(dataset: Dataset, found: diagnosis.Diagnosis, named: set[str], first: str) -> list[Ranked]:
-    """In `ORDER`; the lab lists one family of effects after the other.
-
-    Args:
-        dataset: that was judged.
-        found: of the lab.
-        named: its class.
-        first: what is to be added before anything else; empty where nothing is.
-    """
+    """In `ORDER`; the lab lists one family of effects after the other."""
 
     def place(one: diagnosis.Candidate) -> tuple[bool, bool, float]:
         if one.effect.name in named:

@@ -16,11 +16,6 @@ MOST = 16  # kept: some kB each, beside their datasets' own few
 def diagnosis_of_model(material: Material, model: ModelRow, fit: Fit) -> Diagnosis:
     """The diagnosis of a model; neither finished trials nor models ever change, so that it stays what it was.
 
-    Args:
-        material: of the study, as it was when the model was fitted.
-        model: which.
-        fit: the model, fitted to the material.
-
     Raises:
         StudyError: no effect can be judged on these trials.
     """

@@ -81,7 +81,6 @@ class Explained:
     Attributes:
         study_id: of the study that was made.
         sentences: what was measured, what was missing, what is left.
-        rungs: error from model to model.
         coverage: what the trials can and cannot tell.
         not_judged: effects that the last diagnosis could not judge on these trials; the report says why.
         html: the report, as one page that needs no network.

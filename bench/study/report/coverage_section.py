@@ -32,12 +32,7 @@ def coverage_section(found: Coverage) -> Section:
 
 
 def advice_section(found: Coverage, separating: list[str]) -> Section:
-    """What to record next, what opens most first.
-
-    Args:
-        found: what the trials tell.
-        separating: what would tell the named effects apart, in words.
-    """
+    """What to record next, what opens most first."""
     rows = [(one.trial, len(one.effects) or "all", _names(one.effects)) for one in found.advice]
     rows += [(text, "", "tells the effects that are named together apart") for text in separating]
     if not rows:

@@ -42,16 +42,7 @@ _JUDGED_BY = {
 def head_section(
     study: Study, rungs: Ladder, diagnosis: str, store: Store, pictures: Sequence[Figure], confused: Sequence[str] = ()
 ) -> Section:
-    """What whoever files the report looks for first.
-
-    Args:
-        study: which one.
-        rungs: its models.
-        diagnosis: of the newest model, in a sentence.
-        store: with its experiments.
-        pictures: what came out, in one look.
-        confused: which of its effects could as well be others, in sentences.
-    """
+    """What whoever files the report looks for first."""
     numbers = dict.fromkeys(store.trial(one.trial_id).experiment_id for one in study.trials)
     experiments = [store.experiment(number) for number in numbers]
     now = software()

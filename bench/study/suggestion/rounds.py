@@ -28,7 +28,6 @@ class Tried:
     """A trial that was started.
 
     Attributes:
-        name: of it.
         reason: why it did not complete; empty where it did.
     """
 

@@ -16,7 +16,6 @@ class BusPort:
     """One bus, opened for the first link to it and closed with the last. All its links are used by one thread.
 
     Attributes:
-        links: that are open.
         echoes: frames sent that come back, by COB-ID and data; None where the interface echoes nothing.
     """
 

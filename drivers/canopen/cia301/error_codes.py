@@ -21,7 +21,6 @@ class ErrorCodes:
     """The codes of one vendor, and the standard's.
 
     Attributes:
-        names: in words, by code.
         classes: of the standard, by the first digit.
     """
 

@@ -25,7 +25,6 @@ class ObjectRefusedError(DriveConfigurationError):
 
     Attributes:
         code: abort code of CiA 301, 7.2.4.3.17.
-        why: the code in words.
     """
 
     def __init__(self, device: str, message: str, code: int, why: str = "") -> None:

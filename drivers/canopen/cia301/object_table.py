@@ -21,9 +21,7 @@ class ObjectUse:
     """One row of the table.
 
     Attributes:
-        object: its name and place.
         need: without a required one the drive is not opened.
-        purpose: what it is for.
         found: whether the drive has it and it is as wanted; else it is done without.
         outcome: in words: the value, or why it is done without.
     """

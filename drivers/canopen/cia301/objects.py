@@ -26,9 +26,6 @@ class DriveObject:
     """One entry of the object dictionary.
 
     Attributes:
-        index, subindex: its place.
-        type: how it is coded.
-        name: in words, for messages.
         scale: what one count is worth, in `unit`.
         unit: SI; "rated current" for values that are relative to it.
         mappable: whether it can be put into a PDO.

@@ -63,7 +63,6 @@ class DriveUnits:
     Attributes:
         velocity_rad_s: one count of velocity at the motor [rad/s]; NaN where neither drive nor settings tell.
         acceleration_rad_s2: one count of acceleration at the motor [rad/s2]; NaN where the drive does not tell.
-        rows: for a person to compare.
         told_counts: counts of a motor turn, by the drive; NaN where it tells none.
     """
 

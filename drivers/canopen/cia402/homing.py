@@ -93,7 +93,6 @@ class HomingDemand:
 
     Attributes:
         code: of 0x6060.
-        pdo: that carries the controlword.
     """
 
     code = HOMING_MODE

@@ -11,15 +11,11 @@ class ObjectProfile:
     """The objects of a family of drives. None where the family has none.
 
     Attributes:
-        name: as in the settings.
         vendor_id: 0x1018:01 of the family; None for any.
-        current: actual motor current.
         duty: magnitude of the applied PWM duty.
         supply: DC link voltage.
-        temperature: of the power stage.
         rated_current: what 1000 permille of torque are in current; None where it follows from the next two.
         rated_torque, torque_constant: rated torque / torque constant = rated current.
-        current_limit: highest motor current.
     """
 
     name: str

@@ -14,7 +14,6 @@ class DriveScale:
     """Scales of one drive and its joint.
 
     Attributes:
-        joint: counts, gear ratio, signs, zero.
         rated_current_a: motor current of 1000 permille [A]; NaN where unknown.
         velocity_unit_rad_s: one count of velocity at the motor [rad/s]; NaN where unknown.
         acceleration_unit_rad_s2: one count of acceleration at the motor [rad/s2]; NaN where the drive does not tell.

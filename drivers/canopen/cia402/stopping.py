@@ -34,7 +34,6 @@ class Stopping:
     Attributes:
         on_ramp: whether it may brake on its ramp while a host watches.
         ends: whether a quick stop that nobody watches is known to end soon in power-off.
-        words: for a person.
     """
 
     on_ramp: bool
@@ -43,13 +42,7 @@ class Stopping:
 
 
 def set_up_stopping(table: ObjectTable, scale: DriveScale, speed_rad_s: float) -> Stopping:
-    """Have quick stop and fault reaction end in power-off, soon.
-
-    Args:
-        table: of the drive's objects.
-        scale: of drive and joint.
-        speed_rad_s: of the joint, from which it has to stop [rad/s].
-    """
+    """Have quick stop and fault reaction end in power-off, soon."""
     time_s, why_not = _set_up_ramp(table, scale.acceleration_rad_s2, speed_rad_s)
     is_sure = time_s <= (RAMP_S if scale.tells_acceleration else RAMP_S / _MISTAKE)
     ends = _set_up_option(table, QUICK_STOP_OPTION, not why_not)

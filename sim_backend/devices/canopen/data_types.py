@@ -9,7 +9,6 @@ class DataType:
     """One type.
 
     Attributes:
-        code: its number in an EDS.
         layout: of `struct`; "" is text. A real number is kept as the integer of its bytes: this drive has none.
     """
 

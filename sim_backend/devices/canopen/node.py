@@ -53,7 +53,6 @@ class Node:
         on_reset: called after an application reset.
         on_lost: called when the master is gone, with the error that says how: its heartbeat or its requests stay away,
             an RPDO comes too late, or NMT has stopped or reset the node.
-        losses: how often it has gone.
     """
 
     def __init__(self, dictionary: Dictionary, conduct: Conduct = GOOD) -> None:

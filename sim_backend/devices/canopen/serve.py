@@ -102,7 +102,6 @@ class CanOpenSettings(ServedOnBus):
         family: "generic", "homing" (that one with homing) or "epos4".
         eds: data sheet or configuration file of the drive to be, instead of a family.
         node_id: 1 .. 127; None: what the file says, or 5.
-        conduct: the drive's manners.
     """
 
     family: str = "generic"

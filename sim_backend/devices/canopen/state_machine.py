@@ -76,7 +76,6 @@ class StateMachine:
     """The power state of a drive.
 
     Attributes:
-        state: now.
         ending: how the motor is being stopped; None while it is not.
     """
 

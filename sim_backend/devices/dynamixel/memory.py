@@ -15,10 +15,8 @@ class Kind(NamedTuple):
     """A model, as far as it matters here.
 
     Attributes:
-        number: Model Number.
         current_a: one step of the current [A]; 0: it measures the load instead, in 0.1 %.
         indirect_data: where the data of the indirect addresses begin.
-        modes: that it has.
     """
 
     number: int

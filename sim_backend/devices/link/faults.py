@@ -34,7 +34,6 @@ class LinkFault(Component):
     """One thing that goes wrong on a line, for a time or for a number of packets.
 
     Attributes:
-        kind: what happens.
         direction: which way; None is both.
         packets: how many packets it strikes; None is every one while it lasts.
         probability: of striking a packet.

@@ -30,8 +30,6 @@ class MitMotor(Device, ABC):
         seed: of the plant.
 
     Attributes:
-        is_on: whether its stage is powered.
-        command: what it was told last.
         watchdog_trips: how often silence has stopped it.
     """
 

@@ -33,7 +33,6 @@ class Register:
     Attributes:
         address: of its first register.
         name: in the code.
-        kind: its type.
         low, high: allowed when written; a register with None can only be read.
     """
 
@@ -77,13 +76,7 @@ ILLEGAL_FUNCTION, ILLEGAL_ADDRESS, ILLEGAL_VALUE = 1, 2, 3
 
 
 class RegisterFile:
-    """Registers of a map.
-
-    Args:
-        registers: the map.
-        value: returns what a register says now, by its name.
-        low_word_first: tells the word order.
-    """
+    """Registers of a map."""
 
     def __init__(
         self, registers: Iterable[Register], value: Callable[[str], int], low_word_first: Callable[[], bool]

@@ -22,7 +22,6 @@ class ModbusSettings(Served):
     Attributes:
         map: one of `MAPS`.
         transport: "rtu" (a pseudo-terminal) or "tcp" (a port of the loopback interface).
-        unit: number of the device.
         low_word_first: word order of our own map at the start.
         baud: pace of a serial line; None is as fast as the machine.
         port: TCP port; 0 is any free one.

@@ -49,12 +49,7 @@ class Controllers(Device):
 
 
 class FdcanusbAdapter(Controllers):
-    """Bytes of a host to the controllers, and back.
-
-    Args:
-        controllers: on the bus.
-        is_uart: whether it is a controller's own UART, whose lines have checksums.
-    """
+    """Bytes of a host to the controllers, and back."""
 
     def __init__(self, controllers: Sequence[MoteusController], is_uart: bool = False) -> None:
         super().__init__(controllers)

@@ -15,7 +15,6 @@ class Command:
     """One command of the manual.
 
     Attributes:
-        name: what the device calls it.
         payload: layout of what comes with it.
         reply: layout of what it is answered with; "" is the acknowledgement, "text" a text.
     """

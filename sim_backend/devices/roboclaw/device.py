@@ -51,8 +51,6 @@ class Request(NamedTuple):
 
     Attributes:
         head: address and command, which the CRC of an answer covers too.
-        command: its number.
-        values: the payload, unpacked.
     """
 
     head: bytes

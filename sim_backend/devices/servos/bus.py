@@ -40,12 +40,7 @@ class Servo(Protocol[RequestIn]):
 
 
 class ServoBus(Generic[RequestT]):
-    """The device behind the port. Loads, faults and truth of the side channel are the first servo's.
-
-    Args:
-        servos: in the order in which they answer where several are asked.
-        reader: of the line's packets.
-    """
+    """The device behind the port. Loads, faults and truth of the side channel are the first servo's."""
 
     def __init__(self, servos: Sequence[Servo[RequestT]], reader: Reader[RequestT]) -> None:
         self.axis = servos[0].axis

@@ -24,7 +24,6 @@ class DataSheet:
 
     Attributes:
         name: of the product, or of the file where it has none.
-        objects: all that it lists.
         told: places with a value in the file.
         node_id: of a device that is configured already; None: any.
     """

@@ -28,9 +28,6 @@ class Entry:
 
     Attributes:
         subindex: its number in the object.
-        name: as in the EDS.
-        kind: its type.
-        access: by SDO.
         default: after a reset.
         mappable: into PDOs: a readable one into TPDOs, a writable one into RPDOs too.
         low, high: narrower than the type, where not None.

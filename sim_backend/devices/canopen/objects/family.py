@@ -46,7 +46,6 @@ class Family:
         name: as the command line has it.
         device_name: 0x1008.
         modes: numbers of 0x6060 that it has.
-        objects: its dictionary, for a rating.
         velocity_rad_s: motor speed of one unit of velocity [rad/s], for the encoder's counts per turn.
         position_rad: motor angle of one unit of position [rad], for the encoder's counts per turn.
         acceleration_rad_s2: motor acceleration of one unit of acceleration [rad/s2], for the encoder's counts per turn.
