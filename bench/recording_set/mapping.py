@@ -44,9 +44,8 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
 from bench.config.rig import Section
-from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.text.encoding import is_text
-from bench.recording_set.text.toml_file import parse_toml
+from bench.recording_set.text.toml_file import read_model
 from bench.recording_set.units import TURN, UNITS, Unit, unit_named, units_of
 from compensator.lab.recordings.recording import CHANNELS, EVENT_COLUMN, Condition
 
@@ -241,7 +240,4 @@ def read_mapping(path: Path) -> Mapping:
     Raises:
         RecordingSetError: not there, no TOML, an unknown channel or key; names file, line and key.
     """
-    try:
-        return parse_toml(path.read_bytes(), Mapping, path.name)
-    except OSError as error:
-        raise RecordingSetError(str(path), f"cannot be read: {error.strerror}; name a mapping file") from error
+    return read_model(path, Mapping)

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bench.config.rig import Rig
-from bench.recording_set.errors import RecordingSetError
-from bench.recording_set.text.toml_file import parse_toml
+from bench.recording_set.text.toml_file import read_model
 from compensator.lab.recordings.recording import Recording
 
 
@@ -32,7 +31,4 @@ def read_rig(path: Path) -> Rig:
     Raises:
         RecordingSetError: not there, no TOML, an unknown key or an impossible value; names file, line and key.
     """
-    try:
-        return parse_toml(path.read_bytes(), Rig, path.name)
-    except OSError as error:
-        raise RecordingSetError(str(path), f"cannot be read: {error.strerror}; name a rig file") from error
+    return read_model(path, Rig)

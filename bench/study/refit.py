@@ -14,7 +14,6 @@ from bench.study.material import facts_of, load_model
 from bench.study.models.base import StudyModel
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.streaming import PIECE_ROWS, fit_streamed, later_by, piece_starts
-from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.recording import Recording
 
 
@@ -55,7 +54,8 @@ def refit(store: Store, study_id: int, experiment_ids: Sequence[int], model_id: 
     material, model = load_model(store, study_id, model_id)
     fit = material.fit_of(model)
     for number in experiment_ids:
-        _check_rig(store, number, material.definition.facts)
+        if facts_of(Rig.model_validate(store.experiment(number).rig)) != material.definition.facts:
+            raise StudyError(f"experiment {number} is of another rig than the study; make a study of its own for it")
     trials = [t for number in experiment_ids for t in store.trials(number) if t.outcome == "completed" and t.rows]
     if not trials:
         raise StudyError("these experiments have no completed trial with samples; choose others")
@@ -73,11 +73,6 @@ def refit(store: Store, study_id: int, experiment_ids: Sequence[int], model_id: 
         parameters=_parameters(fit, found.coefficients.tolist()),
         skipped=[f"{name}: {why}" for name, why in found.skipped.items()],
     )
-
-
-def _check_rig(store: Store, experiment_id: int, facts: Facts) -> None:
-    if facts_of(Rig.model_validate(store.experiment(experiment_id).rig)) != facts:
-        raise StudyError(f"experiment {experiment_id} is of another rig than the study; make a study of its own for it")
 
 
 def _pieces(store: Store, trial: Trial, cutoff_hz: float) -> Iterator[Recording]:

@@ -80,7 +80,7 @@ def draw_plant(seed: int, wanted: Wanted) -> DrawnPlant:
     for one in hidden:
         asked = MECHANISMS[one.name].current
         measures = measures if asked is None else asked
-    sensor = _sensor(joint, wanted.noise, measures)
+    sensor = {"present": measures, "noise_a": wanted.noise * joint.peak_a, "resolution_a": joint.peak_a / 2000.0}
     equipped = Joint(**{**vars(joint), "tables": merged(joint.tables, {"current_sensor": sensor})})
     return DrawnPlant(equipped, hidden, tolerance)
 
@@ -117,7 +117,3 @@ def merged(*parts: Tables) -> Tables:
 def _agree(one: Mechanism, other: Mechanism) -> bool:
     """Tell whether both can show with one and the same drive."""
     return None in (one.current, other.current) or one.current == other.current
-
-
-def _sensor(joint: Joint, noise: float, present: bool) -> dict[str, float]:
-    return {"present": present, "noise_a": noise * joint.peak_a, "resolution_a": joint.peak_a / 2000.0}

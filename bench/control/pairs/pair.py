@@ -18,10 +18,6 @@ PAIR_VALUES = (
 _row: Callable[[tuple[Any, ...]], Row] = row_reader(PAIR_CHANNELS, PAIR_VALUES)
 
 
-def _nothing_known() -> Truth:
-    return Truth()
-
-
 def _free(_reach: Reach) -> None:
     """The operator does as he likes."""
 
@@ -41,7 +37,7 @@ class JointPair:
         self,
         slave: ControlledJoint,
         master: ControlledJoint,
-        truth: Callable[[], Truth] = _nothing_known,
+        truth: Callable[[], Truth] = Truth,
         operate: Callable[[Reach], None] = _free,
     ) -> None:
         self.joints = (master, slave)

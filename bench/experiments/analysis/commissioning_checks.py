@@ -73,7 +73,7 @@ def _sign_unseen(pushes: Sequence[Push]) -> Finding:
 
 def check_friction(pushes: Sequence[Push]) -> Finding:
     """There and back over one way: the measured currents differ by friction, which has the sign of the motion."""
-    there_a, back_a = (_column(_moving(push.driven), "current_a") for push in pushes)
+    there_a, back_a = (column(_moving(push.driven), "current_a") for push in pushes)
     if np.isnan([*there_a, *back_a]).any():
         return Finding("current", None, "the drive measures no current; it is estimated by the paper's eq. (3)")
     means = float(np.mean(there_a)), float(np.mean(back_a))
@@ -114,7 +114,7 @@ def check_velocity(pushes: Sequence[Push]) -> Finding:
 
 def check_current(pushes: Sequence[Push]) -> Finding:
     """The measured current has the sign of the acceleration that it makes."""
-    currents_a = [float(np.mean(_column(push.driven, "current_a"))) for push in pushes]
+    currents_a = [float(np.mean(column(push.driven, "current_a"))) for push in pushes]
     if np.isnan(currents_a).any():
         return Finding("current", None, "the drive measures no current; it is estimated by the paper's eq. (3)")
     text = ", ".join(
@@ -135,8 +135,8 @@ def check_ratio(pushes: Sequence[Push], rig: Rig) -> Finding:
     if resistance_ohm is None or back_emf_v_s_rad is None or gear_ratio is None:
         return Finding("ratio", None, "not checked: it takes resistance, back-EMF constant and gear ratio of the rig")
     readings = [reading for push in pushes for reading in push.driven]
-    current_a, motor_rad_s = _column(readings, "current_a"), _velocity(readings) * gear_ratio
-    voltage_v = _column(readings, "duty") * _column(readings, "supply_v")
+    current_a, motor_rad_s = column(readings, "current_a"), _velocity(readings) * gear_ratio
+    voltage_v = column(readings, "duty") * column(readings, "supply_v")
     if not np.isfinite(current_a).all() or not np.isfinite(voltage_v).all():
         return Finding("ratio", None, "not checked: it takes measured current, duty and supply voltage")
     matrix = np.column_stack([current_a, motor_rad_s])
@@ -163,7 +163,8 @@ def _moving(readings: Sequence[Reading]) -> list[Reading]:
     return [reading for reading in readings if abs(reading.velocity_rad_s) >= MOVING_SHARE * fastest_rad_s]
 
 
-def _column(readings: Sequence[Reading], name: str) -> FloatArray:
+def column(readings: Sequence[Reading], name: str) -> FloatArray:
+    """A field of each sample, shape (n,)."""
     return np.array([getattr(reading.sample, name) for reading in readings])
 
 
@@ -173,7 +174,7 @@ def _velocity(readings: Sequence[Reading]) -> FloatArray:
 
 def _share_of_way(readings: Sequence[Reading]) -> float:
     """The velocity summed up along the way, as a share of the way."""
-    position_rad, velocity_rad_s = _column(readings, "position_rad"), _velocity(readings)
+    position_rad, velocity_rad_s = column(readings, "position_rad"), _velocity(readings)
     way_rad, elapsed_s = np.diff(position_rad), np.diff([reading.time_s for reading in readings])
     mean_rad_s = 0.5 * (velocity_rad_s[1:] + velocity_rad_s[:-1])
     return float(np.sum(mean_rad_s * np.sign(way_rad) * elapsed_s) / np.sum(np.abs(way_rad)))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from bench.control.cycle import Reading
 from bench.errors import ExperimentError
-from bench.experiments.analysis.commissioning_checks import Push
+from bench.experiments.analysis.commissioning_checks import Push, column
 from compensator.errors import CalibrationError
 from compensator.line_fit import Interval, fit_line
 from compensator.motion.push_identification import JointModel, Motion, identify
@@ -129,7 +129,7 @@ def _current_a(part: Sequence[Reading], sign: int, electrics: Electrics | None) 
     measured_a: FloatArray = np.nan_to_num(np.array([one.current_a for one in part]))
     if electrics is None or isnan(electrics.resistance_ohm.value):
         return measured_a
-    duty, supply_v = _column(part, "duty"), _column(part, "supply_v")
+    duty, supply_v = column(part, "duty"), column(part, "supply_v")
     back_emf_v = electrics.back_emf_v_s_rad.value * sign * np.array([one.velocity_rad_s for one in part])
     found_a = np.asarray((duty * supply_v - back_emf_v) / electrics.resistance_ohm.value)
     off = duty == 0.0
@@ -146,7 +146,7 @@ def _breakaway_a(push: Push, count_rad: float) -> float:
 
 def _electrics(driven: Sequence[Reading], demand_sign: int, current_sign: int) -> Electrics:
     """i = (V d - Ke N v) / R, and V = V0 - Rs d i, over all driven readings."""
-    duty, supply_v, current_a = (_column(driven, name) for name in ("duty", "supply_v", "current_a"))
+    duty, supply_v, current_a = (column(driven, name) for name in ("duty", "supply_v", "current_a"))
     if not (np.isfinite(duty).all() and np.isfinite(supply_v).all() and np.isfinite(current_a).all()):
         unseen = Interval(nan, note="the drive does not measure duty, supply and current")
         return Electrics(unseen, unseen, unseen)
@@ -170,7 +170,7 @@ def _sag(drawn_a: FloatArray, supply_v: FloatArray) -> Interval:
 
 def _lag_s(readings: Sequence[Reading]) -> float:
     """Time constant of a first-order lag between the slope of the position and the drive's velocity."""
-    velocity_rad_s = _column(readings, "velocity_rad_s")
+    velocity_rad_s = column(readings, "velocity_rad_s")
     if np.isnan(velocity_rad_s).any():
         return nan
     time_s, position_rad = _times(readings), _positions(readings)
@@ -189,7 +189,3 @@ def _times(readings: Sequence[Reading]) -> FloatArray:
 
 def _positions(readings: Sequence[Reading]) -> FloatArray:
     return np.array([reading.sample.position_rad for reading in readings])
-
-
-def _column(readings: Sequence[Reading], name: str) -> FloatArray:
-    return np.array([getattr(reading.sample, name) for reading in readings])

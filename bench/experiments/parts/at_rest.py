@@ -71,15 +71,11 @@ def measure_at_rest(
         found.append(one)
         if one.failure:
             yield from joint.move(0.0)
-            return results | _no_estimate(one.failure)
+            return results | dict.fromkeys(_SEARCHED) | {"search_failure": one.failure}
         told = finding(found, configuration)
         yield from joint.reflect(angle_rad, told.load_current_a, told.half_width_a)
     yield from joint.move(0.0)
     return results | _estimate(found, steady.position_rad, configuration)
-
-
-def _no_estimate(failure: str) -> dict[str, Value]:
-    return {**dict.fromkeys(_SEARCHED), "search_failure": failure}
 
 
 def _estimate(found: list[Found], steady_rad: float, configuration: BenchConfiguration) -> dict[str, Value]:

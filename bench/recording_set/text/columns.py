@@ -91,7 +91,8 @@ def plan(table: Headed, mapping: Mapping) -> Plan:
     mapped = {name: one for name, one in mapping.columns.items() if all(each in table.header for each in one.read)}
     _check_clash(table, mapped, mapping)
     taken = {name for one in mapped.values() for name in one.sources}
-    own = [name for name in table.header if _is_known(name) and name not in taken and not _unwanted(name, mapping)]
+    unwanted = taken.union(() if mapping.ignore == "rest" else mapping.ignore)
+    own = [name for name in table.header if _is_known(name) and name not in unwanted]
     channels = {name: Column(source=name) for name in own} | mapped
     if mapping.rate_hz is not None:
         channels.pop(TIME, None)
@@ -106,10 +107,6 @@ def plan(table: Headed, mapping: Mapping) -> Plan:
     if mapping.position_from_speed and not set(SPEED_UNITS) & set(channels):
         raise table.error("has no speed that position_from_speed could integrate; map a velocity", table.header_line)
     return Plan(channels, events.sources[0] if events else None)
-
-
-def _unwanted(name: str, mapping: Mapping) -> bool:
-    return mapping.ignore != "rest" and name in mapping.ignore
 
 
 def _check_known(table: Headed, mapping: Mapping) -> None:

@@ -3,6 +3,7 @@
 import re
 import tomllib
 from collections import Counter
+from pathlib import Path
 from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
@@ -15,6 +16,19 @@ LONGEST_LINE = 2**14  # characters
 MOST_PARTS = 64  # of a key, with a point between them: tomllib's time and memory grow with their square
 _BETWEEN_KEYS = re.compile(r"[=,#{}\[\]:;()]")  # in no key without quotation marks; numbers stand between them, too
 Model = TypeVar("Model", bound=BaseModel)
+
+
+def read_model(path: Path, model: type[Model]) -> Model:
+    """The content of a TOML file on the disk.
+
+    Raises:
+        RecordingSetError: not there, or as `parse_toml`; names file, line and key.
+    """
+    try:
+        return parse_toml(path.read_bytes(), model, path.name)
+    except OSError as error:
+        kind = model.__name__.lower()
+        raise RecordingSetError(str(path), f"cannot be read: {error.strerror}; name a {kind} file") from error
 
 
 def parse_toml(data: bytes, model: type[Model], file: str) -> Model:

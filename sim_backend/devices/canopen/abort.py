@@ -1,5 +1,6 @@
 """SDO abort codes (CiA 301)."""
 
+from collections.abc import Callable, Container
 from enum import IntEnum
 
 
@@ -30,3 +31,13 @@ class Abort(Exception):
     def __init__(self, code: int) -> None:
         super().__init__(f"SDO abort 0x{code:08X}")
         self.code = code
+
+
+def only(allowed: Container[int]) -> Callable[[int], None]:
+    """Return the check of an object that takes these values alone."""
+
+    def check(value: int) -> None:
+        if value not in allowed:
+            raise Abort(AbortCode.INVALID_VALUE)
+
+    return check

@@ -5,7 +5,7 @@ from threading import RLock
 from drivers.contract import Sample
 from sim_backend.devices.axis import CURRENT, OFF, Axis, Demand, Device
 from sim_backend.devices.can.frame import Frame
-from sim_backend.devices.canopen.abort import Abort, AbortCode
+from sim_backend.devices.canopen.abort import Abort, AbortCode, only
 from sim_backend.devices.canopen.conduct import GOOD, REACTIONS, Conduct
 from sim_backend.devices.canopen.dictionary import Dictionary
 from sim_backend.devices.canopen.emergency import ErrorCode
@@ -21,12 +21,12 @@ from sim_backend.devices.canopen.node import Node
 from sim_backend.devices.canopen.objects.drive_profile import NO_WINDOW
 from sim_backend.devices.canopen.objects.family import Family, Rating
 from sim_backend.devices.canopen.state_machine import (
+    QUICK_STOP_CODES,
     Command,
     Ending,
     State,
     StateMachine,
     command_of,
-    is_quick_stop_code,
 )
 from sim_backend.faults.script import tripped
 from sim_backend.plant.parameters import PlantParameters
@@ -93,8 +93,8 @@ class ServoDrive(Device):
         }
         book.live = {place: source for place, source in live.items() if place in book}
         book.checks[0x6060, 0] = self._check_mode
-        book.checks[0x605A, 0] = _check_quick_stop
-        book.checks[0x6098, 0] = _check_homing
+        book.checks[0x605A, 0] = only(QUICK_STOP_CODES)
+        book.checks[0x6098, 0] = only(METHODS)
         book.reactions[0x6040, 0] = lambda: self._controlwords.append(book.number(0x6040))
         book.reactions[0x607A, 0] = self._aim
         book.reactions[0x60FE, 1] = book.reactions[0x60FE, 2] = self._follow_output
@@ -316,13 +316,3 @@ class ServoDrive(Device):
             raise Abort(AbortCode.INVALID_VALUE)
         if value != self._mode_number and self.axis.mode_is_refused():
             raise Abort(AbortCode.DEVICE_STATE)
-
-
-def _check_quick_stop(value: int) -> None:
-    if not is_quick_stop_code(value):
-        raise Abort(AbortCode.INVALID_VALUE)
-
-
-def _check_homing(value: int) -> None:
-    if value not in METHODS:
-        raise Abort(AbortCode.INVALID_VALUE)

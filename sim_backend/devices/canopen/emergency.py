@@ -3,7 +3,7 @@
 from enum import IntEnum
 from struct import pack
 
-from sim_backend.devices.canopen.abort import Abort, AbortCode
+from sim_backend.devices.canopen.abort import only
 from sim_backend.devices.canopen.dictionary import Dictionary
 
 NO_ERROR = 0x0000
@@ -43,7 +43,7 @@ class Emergency:
         self._dictionary = dictionary
         self._places = dictionary.subindices(0x1003)
         self._present: set[int] = set()
-        dictionary.checks[0x1003, 0] = _only_zero
+        dictionary.checks[0x1003, 0] = only((0,))
         dictionary.reactions[0x1003, 0] = self._clear_history
 
     def reset(self) -> None:
@@ -93,8 +93,3 @@ class Emergency:
 
 def _message(code: int, register: int) -> bytes:
     return pack("<HB5x", code, register)
-
-
-def _only_zero(value: int) -> None:
-    if value:
-        raise Abort(AbortCode.INVALID_VALUE)

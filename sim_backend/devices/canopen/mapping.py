@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from sim_backend.devices.canopen.abort import Abort, AbortCode
+from sim_backend.devices.canopen.abort import Abort, AbortCode, only
 from sim_backend.devices.canopen.dictionary import Dictionary
 from sim_backend.devices.canopen.objects.communication import PDO_DOES_NOT_EXIST
 
@@ -28,7 +28,7 @@ class PdoParameters:
         self._mapping = mapping
         self._received = received
         dictionary.checks[link, 1] = self._check_cob_id
-        dictionary.checks[link, 2] = self._check_type
+        dictionary.checks[link, 2] = only(_TYPES)
         dictionary.checks[mapping, 0] = self._check_count
         for place in range(1, _PLACES + 1):
             dictionary.checks[mapping, place] = self._check_place
@@ -67,10 +67,6 @@ class PdoParameters:
             raise Abort(AbortCode.INVALID_VALUE)
         exists_then = not value & PDO_DOES_NOT_EXIST
         if self.exists and exists_then and value & _CAN_ID != self.can_id:
-            raise Abort(AbortCode.INVALID_VALUE)
-
-    def _check_type(self, value: int) -> None:
-        if value not in _TYPES:
             raise Abort(AbortCode.INVALID_VALUE)
 
     @property

@@ -43,7 +43,7 @@ class Ending(NamedTuple):
 
 
 FAULT_RESET = 0x80
-_QUICK_STOP_CODES = (0, 1, 2, 5, 6)
+QUICK_STOP_CODES = (0, 1, 2, 5, 6)  # options of 0x605A that this drive knows
 _STANDS = (5, 6)  # of 0x605A: stay in quick stop active
 
 _PLAIN: dict[tuple[State, Command], State] = {
@@ -65,11 +65,6 @@ _MOVING = (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE)
 def command_of(controlword: int) -> Command | None:
     """Return what a controlword asks for."""
     return next((one for one in Command if controlword & one.value[0] == one.value[1]), None)
-
-
-def is_quick_stop_code(code: int) -> bool:
-    """Tell whether this drive knows an option of 0x605A."""
-    return code in _QUICK_STOP_CODES
 
 
 class StateMachine:
