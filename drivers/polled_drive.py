@@ -99,13 +99,7 @@ class PolledDrive(Drive, Generic[SessionT]):
         return self._describe(self._session, self._cycle_time)
 
     def open(self, period_s: float) -> None:
-        """Connect, identify, switch off, set the watchdog and read it back, and find out how quick a cycle is.
-
-        Raises:
-            DriveConnectionError: the port is not there, or nothing answers on it.
-            DriveConfigurationError: another drive answers, or the watchdog is shorter than the period.
-            WatchdogError: the watchdog cannot be set, or not be verified.
-        """
+        """Connect, identify, switch off, set the watchdog and read it back, and find out how quick a cycle is."""
         self.close()
         self._lateness.check_period(period_s)
         self._session = self._connect()
@@ -153,34 +147,18 @@ class PolledDrive(Drive, Generic[SessionT]):
         session.begin_quick_stop()
 
     def inspect(self) -> Inspection:
-        """State, fault and applied output; nothing is written.
-
-        Raises:
-            DriveStateError: it is not open.
-            DriveConnectionError: no valid answer in time.
-        """
+        """State, fault and applied output; nothing is written."""
         return self._opened("inspect").inspect()
 
     def clear_fault(self) -> None:
-        """Acknowledge a fault. The drive is left disabled.
-
-        Raises:
-            DriveFault: its cause is still there.
-        """
+        """Acknowledge a fault. The drive is left disabled."""
         session, self._mode = self._opened("clear_fault"), Mode.OFF
         session.clear_fault()
         if session.state is Status.FAULT:
             raise not_cleared(self._device, session.fault_text())
 
     def exchange(self, command: Command) -> Sample:
-        """Send a demand, and return the sample of this cycle.
-
-        Raises:
-            DriveFault: the drive reports a fault, or the demand comes later than its watchdog allows.
-            DriveStateError: it is not open, or motion was commanded in a mode that is not enabled.
-            DriveConfigurationError: a demand that is not finite or out of range; nothing was sent.
-            DriveConnectionError: no valid answer within the time limit.
-        """
+        """Send a demand, and return the sample of this cycle."""
         session = self._ready(command)
         if command.mode is Mode.OFF:
             return session.rest()

@@ -55,11 +55,7 @@ class ActuatorDrive(PolledDrive[ActuatorSession[ActuatorT]], Generic[ActuatorT])
         )
 
     def open(self, period_s: float) -> None:
-        """Connect, identify, switch off, set the watchdog; it has the modes then that it says that it has.
-
-        Raises:
-            DriveError: as of the contract.
-        """
+        """Connect, identify, switch off, set the watchdog; it has the modes then that it says that it has."""
         super().open(period_s)
         if self._session is not None:
             self._modes = self._session.actuator.modes

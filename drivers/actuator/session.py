@@ -59,11 +59,7 @@ class ActuatorSession(Generic[ActuatorT]):
         self.actuator.begin()
 
     def switch_on(self, mode: Mode) -> None:
-        """Power the stage with a demand that moves nothing.
-
-        Raises:
-            DriveStateError: it has a fault.
-        """
+        """Power the stage with a demand that moves nothing."""
         here = self.actuator.ask()
         if here.fault:
             self._fault = here.fault

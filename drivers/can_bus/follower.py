@@ -47,11 +47,7 @@ class BusFollower:
         return perf_counter() - self._heard_s
 
     def look(self, timeout_s: float) -> Sample | None:
-        """Wait for its next frame [s]; None where none comes, or one that tells no motion.
-
-        Raises:
-            DriveConnectionError: the adapter is gone.
-        """
+        """Wait for its next frame [s]; None where none comes, or one that tells no motion."""
         if self._port.wait_for([self._can_id], timeout_s):
             return None
         heard = self._port.last(self._can_id)

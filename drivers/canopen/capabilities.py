@@ -10,7 +10,7 @@ from drivers.canopen.cia402.homing import why_not
 from drivers.canopen.cia402.modes import ModeChoice
 from drivers.canopen.cia402.profiles import ObjectProfile, choose_profile
 from drivers.canopen.cia402.scale import DriveScale
-from drivers.canopen.identity import Identity
+from drivers.canopen.meeting import Identity
 from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Mode, Untold
 from drivers.joint import JointScale

@@ -3,8 +3,7 @@
 from contextlib import suppress
 from math import nan
 
-from drivers.canopen.cia301.bus import BusPort
-from drivers.canopen.cia301.link import CanLink
+from drivers.canopen.cia301.link import BusPort, CanLink
 from drivers.canopen.cia301.object_table import ObjectUse
 from drivers.canopen.cia301.objects import STATUSWORD
 from drivers.canopen.cia301.period import check_bus_load, check_period
@@ -181,12 +180,7 @@ class CanopenDrive:
         return self._opened("watchdog")[0].guard.words
 
     def inspect(self) -> Inspection:
-        """State and fault, by SDO alone: no SYNC, no PDO, no heartbeat is sent.
-
-        Raises:
-            DriveStateError: it is not open.
-            DriveConnectionError: it does not answer.
-        """
+        """State and fault, by SDO alone: no SYNC, no PDO, no heartbeat is sent."""
         session, _ = self._opened("inspect")
         status = status_of(state_of(session.access.read(STATUSWORD)))
         current = session.found.current
@@ -199,11 +193,7 @@ class CanopenDrive:
         return Inspection(status, fault, current_a=current_a, torque_off=session.torque_off())
 
     def clear_fault(self) -> None:
-        """Reset a fault. The drive is left disabled.
-
-        Raises:
-            DriveFault: the cause is still there.
-        """
+        """Reset a fault. The drive is left disabled."""
         _, power = self._opened("clear_fault")
         self._mode, self._stopping = Mode.OFF, False
         power.clear_fault()

@@ -1,24 +1,89 @@
-"""Meeting a drive that somebody may have left as it was: first the power off, then everything else."""
+"""Meeting a drive that somebody may have left as it was: first the power off, then everything else.
+
+Who it is stands in its objects 0x1000, 0x1008 to 0x100A and 0x1018 (CiA 301).
+"""
 
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from time import perf_counter
 from typing import Final
 
 from drivers.canopen.cia301.object_access import ObjectAccess, ObjectRefusedError
 from drivers.canopen.cia301.object_table import Need, ObjectTable
-from drivers.canopen.cia301.objects import CONTROLWORD, STATUSWORD
+from drivers.canopen.cia301.objects import CONTROLWORD, DEVICE_TYPE, PRODUCT, REVISION, SERIAL, STATUSWORD, VENDOR
 from drivers.canopen.cia402.bits import OUTPUTS
 from drivers.canopen.cia402.state_machine import DISABLE_VOLTAGE, QUICK_STOP, State, state_of
-from drivers.canopen.identity import Identity, identify
 from drivers.canopen.settings import CanopenSettings
-from drivers.errors import DriveConnectionError
+from drivers.errors import DriveConfigurationError, DriveConnectionError
 
+_DRIVE_PROFILE: Final = 402
+_VENDORS: Final = {0xFB: "maxon"}
+_NAME, _FIRMWARE = 0x1008, 0x100A
+_IDENTITY: Final = "identity"
 _POWERED: Final = (State.ENABLED, State.QUICK_STOP, State.FAULT_REACTION)
 _BRAKE_S: Final = 1.0
 _OFF_S: Final = 0.5
 _PAUSE_S: Final = 0.002
 _PURPOSE: Final = "power"
+
+
+@dataclass(frozen=True, slots=True)
+class Identity:
+    """What the drive says of itself."""
+
+    vendor_id: int
+    product_code: int
+    revision: int
+    serial_number: int
+    name: str
+    firmware: str
+
+    @property
+    def vendor(self) -> str:
+        """Name of the vendor, or its number."""
+        return _VENDORS.get(self.vendor_id, f"0x{self.vendor_id:X}")
+
+    @property
+    def product(self) -> str:
+        """Name of the product, and its code."""
+        return f"{self.name} 0x{self.product_code:X}".strip()
+
+
+def identify(table: ObjectTable, access: ObjectAccess, settings: CanopenSettings) -> Identity:
+    """Read the identity, and compare it with the settings.
+
+    Raises:
+        DriveConfigurationError: it is no CiA 402 drive, or another one than the settings name.
+    """
+    device_type = table.read(DEVICE_TYPE, _IDENTITY)
+    profile = device_type & 0xFFFF
+    if profile != _DRIVE_PROFILE:
+        raise DriveConfigurationError(
+            settings.device,
+            f"device profile is {profile}; {_DRIVE_PROFILE}, a drive, is wanted (0x1000 is 0x{device_type:X}). Correct "
+            "node_id where another node is meant; a controller without that profile cannot be driven over CANopen",
+        )
+    found = Identity(
+        vendor_id=table.ask(VENDOR, _IDENTITY) or 0,
+        product_code=table.ask(PRODUCT, _IDENTITY) or 0,
+        revision=table.ask(REVISION, _IDENTITY) or 0,
+        serial_number=table.ask(SERIAL, _IDENTITY) or 0,
+        name=access.read_text(_NAME),
+        firmware=access.read_text(_FIRMWARE),
+    )
+    wanted_and_found = {
+        "vendor_id": (settings.vendor_id, found.vendor_id),
+        "product_code": (settings.product_code, found.product_code),
+        "serial_number": (settings.serial_number, found.serial_number),
+    }
+    for name, (wanted, value) in wanted_and_found.items():
+        if wanted not in (None, value):
+            raise DriveConfigurationError(
+                settings.device,
+                f"{name} is 0x{value:X}; 0x{wanted:X} is wanted. This is another drive: correct node_id or {name}",
+            )
+    return found
 
 
 def meet(

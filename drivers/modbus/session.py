@@ -115,11 +115,7 @@ class Session:
         self.link.begin()
 
     def switch_on(self, mode: Mode) -> None:
-        """Power the stage, with a demand that moves nothing.
-
-        Raises:
-            DriveStateError: it has a fault, or does not switch on in time.
-        """
+        """Power the stage, with a demand that moves nothing."""
         self.told = Status.ENABLED
         deadline_s = perf_counter() + ENABLING_S
         self._stay(mode)
@@ -168,11 +164,7 @@ class Session:
         self.switch_off()
 
     def inspect(self) -> Inspection:
-        """State, fault and applied output, by reading alone.
-
-        Raises:
-            DriveConnectionError: no valid answer within the time limit.
-        """
+        """State, fault and applied output, by reading alone."""
         values: Values = {}
         for block in self._plan.read:
             values |= block.decode(self.link.read(block))

@@ -87,11 +87,7 @@ class MoteusActuator(Actuator):
 
     @staticmethod
     def exchange_all(demands: Sequence[tuple["MoteusActuator", Mode, float]]) -> list[Reading]:
-        """Send every torque and question, then wait for all answers.
-
-        Raises:
-            DriveConnectionError: one of them does not answer.
-        """
+        """Send every torque and question, then wait for all answers."""
         asked_s = perf_counter()
         questions = {one.servo_id: one.question(mode, value) for one, mode, value in demands}
         answers = demands[0][0].bus.ask(questions, "registers")

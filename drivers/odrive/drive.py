@@ -122,11 +122,7 @@ class OdriveActuator(Actuator):
 
     @staticmethod
     def exchange_all(demands: Sequence[tuple["OdriveActuator", Mode, float]]) -> list[Reading]:
-        """Send every torque and every question, then wait for all answers.
-
-        Raises:
-            DriveConnectionError: one of them does not answer.
-        """
+        """Send every torque and every question, then wait for all answers."""
         bus, settings = demands[0][0].bus, demands[0][0]._settings
         asked_s = perf_counter()
         for _ in range(ATTEMPTS):

@@ -73,11 +73,7 @@ class ServoActuator(Actuator):
 
     @staticmethod
     def exchange_all(demands: Sequence[tuple["ServoActuator", Mode, float]]) -> list[Reading]:
-        """Write the goals of servos on one bus, and read the piece of each, in one go.
-
-        Raises:
-            DriveConnectionError: one of them does not answer.
-        """
+        """Write the goals of servos on one bus, and read the piece of each, in one go."""
         first = demands[0][0]
         goals: dict[int, dict[int, bytes]] = {}
         for servo, mode, value in demands:

@@ -121,11 +121,7 @@ class ServoFollower:
         return perf_counter() - self._said_s
 
     def look(self, timeout_s: float) -> Sample | None:
-        """Pass on what is said for a while [s]; return a sample as soon as one was taken, else None.
-
-        Raises:
-            DriveConnectionError: the real port is gone.
-        """
+        """Pass on what is said for a while [s]; return a sample as soon as one was taken, else None."""
         end_s = perf_counter() + timeout_s
         while (now_s := perf_counter()) < end_s:
             self._pass_on(min(end_s, now_s + _QUIET_S) - now_s)

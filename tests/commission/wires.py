@@ -162,7 +162,7 @@ def plugged_in(port: Any) -> Iterator[None]:
         patches.enter_context(mock.patch("drivers.host_time.processor_wait_s", return_value=0.0))  # of real time
         # virtual time waits for the store, as that of a drive in process does
         patches.enter_context(mock.patch("bench.control.clock.WallClock.patience_s", 30.0))
-        patches.enter_context(mock.patch("drivers.canopen.cia301.bus.open_bus", return_value=port))
+        patches.enter_context(mock.patch("drivers.canopen.cia301.link.open_bus", return_value=port))
         for name in ("Serial", "serial_for_url"):
             patches.enter_context(mock.patch(f"serial.{name}", return_value=port))
         yield

@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from sim_backend.devices.hand import Hand
+from sim_backend.devices.process import Hand
 from tests.commission.virtual_time import TIME
 from tests.virtual import buses, ports
 

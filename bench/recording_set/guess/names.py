@@ -5,7 +5,6 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from bench.recording_set.guess.vocabulary import DERIVED, ERROR, JOINT_SIDE, MEASURED, OTHER_AXIS, SENSOR, TARGET, WORDS
 from bench.recording_set.units import ENDINGS, Unit, unit_named
 from compensator.lab.recordings.recording import CHANNELS
 
@@ -23,6 +22,61 @@ UNITS_OF = {
     "load_torque": ("N m",), "force": ("N",), "temperature": ("degC",), "enabled": ("1",),
 }  # fmt: skip
 _OF_CHANNEL = {f"{quantity}{ENDINGS[si]}": quantity for quantity, units in UNITS_OF.items() for si in units}
+
+
+def _listed(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+# the first quantity that a word of a name belongs to is taken: what is more special stands before
+WORDS: tuple[tuple[str, frozenset[str]], ...] = (
+    ("temperature", _listed("temperature temp temperatur température temperatura tmp tmot tmotor")),
+    ("enabled", _listed("enabled enable enb")),
+    ("duty", _listed("duty pwm dutycycle tastgrad")),
+    (
+        "supply",
+        _listed(
+            "supply vbus ubus udc vdc vin battery batt vbat dclink zwischenkreis zwischenkreisspannung versorgung "
+            "versorgungsspannung bus"
+        ),
+    ),
+    ("acceleration", _listed("acc accel acceleration beschleunigung accélération aceleración ddq qdd")),
+    ("torque", _listed("torque tau trq drehmoment moment couple par torsion koppel coppia effort")),
+    ("force", _listed("force kraft fuerza forza fz fx fy")),
+    ("current", _listed("current curr cur i iq amps amp strom motorstrom courant corriente corrente")),
+    ("voltage", _listed("voltage volt volts u uq vq spannung tension tensión voltaje tensione")),
+    (
+        "velocity",
+        _listed(
+            "vel velocity speed omega ω w dq qd qdot dtheta thetadot rpm drehzahl geschwindigkeit "
+            "winkelgeschwindigkeit vitesse velocidad velocità spd xdot"
+        ),
+    ),
+    (
+        "position",
+        _listed(
+            "pos position angle ang winkel drehwinkel lage weg q theta phi posición posicion ángulo angulo posizione "
+            "enc encoder counts count ticks displacement stroke x"
+        ),
+    ),
+    (
+        "time",
+        _listed(
+            "t time zeit temps tiempo tempo timestamp stamp clock millis micros seconds secs sec date datum uhrzeit "
+            "zeitstempel zeitpunkt elapsed datetime hora heure fecha ms us nanosec nsec nsecs"
+        ),
+    ),
+)
+TARGET = _listed(
+    "target ref reference setpoint set sp soll sollwert desired des cmd command commanded goal demand consigne wanted "
+    "objetivo referencia dem"
+)
+ERROR = _listed("error err deviation abweichung fehler schleppfehler erreur residual std rms var covariance status")
+MEASURED = _listed("actual act measured meas ist istwert feedback fb present real mes mesuré medido encoder")
+DERIVED = _listed("filtered filt lp smooth estimate estimated est sim simulated model hat pred predicted")
+SENSOR = _listed("sensor cell loadcell transducer messwelle measured external extern output load")
+OTHER_AXIS = _listed("d id ia ib ic phase a b c")  # of a vector drive: not what makes torque
+JOINT_SIDE = _listed("joint output link arm load abtrieb gelenk")
 
 
 @dataclass(frozen=True)

@@ -11,14 +11,49 @@ import can
 import canopen
 
 from drivers.can_bus.bus import is_full, send
-from drivers.canopen.cia301.bus import BusPort
 from drivers.errors import DriveConnectionError
 
 if TYPE_CHECKING:
     from drivers.canopen.cia301.sync_cycle import SyncCycle
+from collections import Counter
+
+from drivers.can_bus.bus import close_bus, open_bus
+from drivers.can_bus.settings import BusSettings
 
 _MOST_WAITING = 2000  # frames taken in at once: a babbling node must not hold the loop
 _BUS_OFF = 0x40  # error class of a SocketCAN error frame (linux/can/error.h)
+
+
+class BusPort:
+    """One bus, opened for the first link to it and closed with the last. All its links are used by one thread.
+
+    Attributes:
+        echoes: frames sent that come back, by COB-ID and data; None where the interface echoes nothing.
+    """
+
+    def __init__(self, settings: BusSettings) -> None:
+        self.settings = settings
+        self.links: tuple[CanLink, ...] = ()
+        self.echoes: Counter[tuple[int, bytes]] | None = Counter() if settings.echoes else None
+        self._bus: can.BusABC | None = None
+
+    def join(self, link: "CanLink", device: str) -> can.BusABC:
+        """The bus, open.
+
+        Raises:
+            DriveConnectionError: it is not there, or does not open in time.
+        """
+        if self._bus is None:
+            self._bus = open_bus(self.settings, device)
+        self.links = (*self.links, link)
+        return self._bus
+
+    def leave(self, link: "CanLink") -> None:
+        """Close the bus, where no other link uses it. Never raises."""
+        self.links = tuple(one for one in self.links if one is not link)
+        if not self.links and self._bus is not None:
+            bus, self._bus = self._bus, None
+            close_bus(bus)
 
 
 class CanLink(canopen.Network):

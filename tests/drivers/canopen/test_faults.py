@@ -250,7 +250,7 @@ def test_frames_that_are_not_what_they_should_be_are_counted_and_not_believed(no
 def test_a_bus_that_goes_off_in_motion_ends_in_the_drives_own_stop(node, channel, monkeypatch):
     """The kernel's error frame of a controller that has left the bus, on a bus inside this process."""
     monkeypatch.setattr(
-        "drivers.canopen.cia301.bus.open_bus", lambda _settings, _device: can.Bus(interface="virtual", channel=channel)
+        "drivers.canopen.cia301.link.open_bus", lambda _settings, _device: can.Bus(interface="virtual", channel=channel)
     )
     drive = _moving(
         CanopenDrive(CanopenSettings(bus=BusSettings("socketcan", channel), node_id=5, host_node_id=127), JOINT)

@@ -6,8 +6,7 @@ import can
 import pytest
 
 from drivers.can_bus.settings import BusSettings
-from drivers.canopen.cia301.bus import BusPort
-from drivers.canopen.cia301.link import CanLink
+from drivers.canopen.cia301.link import BusPort, CanLink
 from drivers.canopen.drive import CanopenDrive
 from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode, Status

@@ -10,8 +10,7 @@ import pytest
 
 from drivers.can_bus.bus import close_bus, open_bus
 from drivers.can_bus.settings import BusSettings
-from drivers.canopen.cia301.bus import BusPort
-from drivers.canopen.cia301.link import CanLink
+from drivers.canopen.cia301.link import BusPort, CanLink
 from drivers.errors import DriveConnectionError
 
 
