@@ -143,11 +143,7 @@ class Commission:
         self._keep(ran.results, ran.id)
 
     def _pushed(self, asked: dict[str, Value]) -> Experiment:
-        """Pushes from which the inertia is sure; again where a late host has drawn them out.
-
-        Raises:
-            CommissionError: it is not sure.
-        """
+        """Pushes from which the inertia is sure; again where a late host has drawn them out."""
         bench = self._table.bench()
         for _ in range(ATTEMPTS):
             ran = self._motions.run(bench, "identification", asked, BARE)

@@ -83,11 +83,7 @@ def _recording(file: Path, joint: str, effort: str, topic: str) -> Recording:
 
 
 def _states(file: Path, joint: str, topic: str) -> Iterator[JointState]:
-    """The states of a joint, in the order of the log.
-
-    Raises:
-        RecordingSetError: no MCAP, several topics with joint states, or none with the joint.
-    """
+    """The states of a joint, in the order of the log."""
     make_reader, decoder = _mcap()
     others: set[str] = set()
     found_joint = False

@@ -92,11 +92,7 @@ def pass_on(follower: Follower, stopped: Stopped) -> None:
 
 
 def _channels(samples: list[Sample], configuration: BenchConfiguration) -> dict[str, np.ndarray]:
-    """What was measured; a quantity that never was is left out.
-
-    Raises:
-        ConfigurationError: a torque alone is told, and the rig does not say what current that is.
-    """
+    """What was measured; a quantity that never was is left out."""
     servo, constant_n_m_a = current_servo(configuration.rig), torque_constant_n_m_a(configuration.rig)
     if isnan(constant_n_m_a) and any(isfinite(one.torque_n_m) and isnan(one.current_a) for one in samples):
         raise ConfigurationError(

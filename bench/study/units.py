@@ -99,11 +99,7 @@ class _Loading:
 
 
 def _alike(study_ids: Sequence[int], found: Sequence[Definition]) -> list[Definition]:
-    """With one low-pass: coefficients depend on it.
-
-    Raises:
-        StudyError: not of one kind.
-    """
+    """With one low-pass: coefficients depend on it."""
     first = found[0]
     for study_id, one in zip(study_ids, found, strict=True):
         for name in KIND:

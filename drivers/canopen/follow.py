@@ -73,11 +73,7 @@ def follow(settings: CanopenSettings, joint: JointScale, mappings: Mappings) -> 
 
 
 def _places(device: str, mappings: Mappings) -> dict[int, _Place]:
-    """Where each object is, by its entry.
-
-    Raises:
-        DriveConfigurationError: an entry is no whole number of bytes.
-    """
+    """Where each object is, by its entry."""
     found = {}
     for cob_id, entries in mappings.items():
         bits = 0

@@ -314,11 +314,7 @@ class Session:
                 self.poll.put(item, value, perf_counter())
 
     def _try_cycles(self, period_s: float) -> float:
-        """Exchange with the power off; the shortest time of a cycle [s]: what drive and line need, not a busy host.
-
-        Raises:
-            DriveConnectionError: the drive does not answer SYNC.
-        """
+        """Exchange with the power off; the shortest time of a cycle [s]: what drive and line need, not a busy host."""
         times_s: list[float] = []
         deadline_s = perf_counter() + _TRIAL_S
         cycles = 0

@@ -76,11 +76,7 @@ class DamiaoActuator(MitActuator):
         return self.in_si(asked_s, moves, temperature_c, state == protocol.ENABLED, protocol.error_name(state))
 
     def _checked_ranges(self) -> Ranges:
-        """What it says that its frames mean.
-
-        Raises:
-            DriveConfigurationError: they mean nothing, or the model has others.
-        """
+        """What it says that its frames mean."""
         registers = (Register.POSITION_RANGE, Register.SPEED_RANGE, Register.TORQUE_RANGE)
         found = Ranges(*(float(self._read(one, protocol.FLOAT)) for one in registers))
         if not all(0.0 < one < inf for one in found):

@@ -114,11 +114,7 @@ class FeetechActuator(ServoActuator):
         return Identity("Feetech", name, f"{version & 0xFF}.{version >> 8}", "", version == SIMULATED_FIRMWARE)
 
     def _choose(self, mode: Mode) -> None:
-        """Change the mode, in the part of the memory that stays beyond power-off.
-
-        Raises:
-            DriveConfigurationError: the servo does not take it.
-        """
+        """Change the mode, in the part of the memory that stays beyond power-off."""
         wanted = _MODES[mode]
         self._write(memory.LOCK, 0)
         self._write(memory.OPERATING_MODE, wanted)

@@ -92,11 +92,7 @@ def set_current_limit(link: Link, register_map: RegisterMap, settings: ModbusSet
 
 
 def _set(link: Link, register: Register, value: float, settings: ModbusSettings, what: str) -> float:
-    """Write a register of the watchdog, and read it back.
-
-    Raises:
-        WatchdogError: the drive does not take it.
-    """
+    """Write a register of the watchdog, and read it back."""
     [block] = blocks([register])
     try:
         link.write(block, register.encode(value))

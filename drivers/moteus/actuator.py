@@ -126,11 +126,7 @@ class MoteusActuator(Actuator):
         return reading_of(found, self._counts_per_turn, asked_s)
 
     def _identify(self) -> Identity:
-        """Version and serial number.
-
-        Raises:
-            DriveConfigurationError: it tells none: it is no moteus.
-        """
+        """Version and serial number."""
         found = registers(self._ask(self._frames.identity, "identity"))
         if not {0x101, 0x120, 0x121, 0x122} <= found.keys():
             raise DriveConfigurationError(self._settings.device, "it has no firmware version: is it a moteus?")
@@ -144,11 +140,7 @@ class MoteusActuator(Actuator):
         return sum(servo_id == self.servo_id for servo_id, _ in heard)
 
     def _be_off_after_silence(self) -> None:
-        """Let its watchdog take the power away: as delivered it holds the speed at 0 then, with power.
-
-        Raises:
-            WatchdogError: it does not take that.
-        """
+        """Let its watchdog take the power away: as delivered it holds the speed at 0 then, with power."""
         found = self._console(f"conf get {TIMEOUT_MODE}")
         if found != "0":
             self._console(f"conf set {TIMEOUT_MODE} 0")
@@ -161,11 +153,7 @@ class MoteusActuator(Actuator):
             )
 
     def _console(self, line: str) -> str:
-        """The first line that its console answers.
-
-        Raises:
-            DriveConnectionError: it answers nothing.
-        """
+        """The first line that its console answers."""
         self._heard_text()
         for start in range(0, len(line) + 1, _LINE_BYTES):
             self.bus.tell(self.servo_id, self._frames.text((line + "\n")[start : start + _LINE_BYTES]))

@@ -211,11 +211,7 @@ class Session:
             self.told = Status.DISABLED
 
     def _answers_together(self, settings: RoboclawSettings) -> bool:
-        """Whether the controller answers all of a cycle's questions where they come in one write.
-
-        Raises:
-            DriveConfigurationError: it does not, and is wanted to.
-        """
+        """Whether the controller answers all of a cycle's questions where they come in one write."""
         self.link.begin()
         answered = [self.motor.tell_and_ask(0, self.telemetry.quick) is not None for _ in range(_TRIES_TOGETHER)]
         if settings.questions == "together" and not any(answered):

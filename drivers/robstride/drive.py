@@ -113,11 +113,7 @@ class RobstrideActuator(MitActuator):
         return Identity("RobStride", name, version, serial, serial == SIMULATED_SERIAL)
 
     def _check_ranges(self) -> None:
-        """Compare the ranges with what it says in plain numbers, before anything moves.
-
-        Raises:
-            DriveConfigurationError: another angle, or a torque limit beyond the range: it is another model.
-        """
+        """Compare the ranges with what it says in plain numbers, before anything moves."""
         limit_n_m, angle_rad = self._value(Parameter.TORQUE_LIMIT), self._value(Parameter.POSITION)
         self.told(self.question())
         heard = self.bus.last(self.answer_id)

@@ -232,11 +232,7 @@ class SimulatedDrive:
         return powered and self._status not in (Status.ENABLED, Status.QUICK_STOP)
 
     def _lose_sample(self) -> None:
-        """Let a period pass without a host, where the script loses what is sent.
-
-        Raises:
-            DriveConnectionError: it does.
-        """
+        """Let a period pass without a host, where the script loses what is sent."""
         if self._open and self._script.holding(SamplesLost, self.plant.time_s):
             time_s = self.plant.time_s
             self._pass_period()

@@ -86,11 +86,7 @@ def _count_doubt(session: BenchSession, found: "Connection") -> str:
 
 
 def _set_zero(session: BenchSession, off_rad: float, quiet: bool) -> None:
-    """Shift the zero of bench.toml by what the angle that was measured is off [rad].
-
-    Raises:
-        ConfigurationError: there is no file to be changed, or its drive has no zero.
-    """
+    """Shift the zero of bench.toml by what the angle that was measured is off [rad]."""
     from bench.config.drives.real import RealDriveSettings
     from bench.config.toml_text import set_number
     from bench.errors import ConfigurationError

@@ -179,11 +179,7 @@ def _to_the_stop(joint: Joint, homing: HomingSettings, configuration: BenchConfi
 
 
 def _press(joint: Joint, homing: HomingSettings, configuration: BenchConfiguration) -> Generator[Action, Reading, None]:
-    """Press with all the current: what was only held up by its weight or by friction goes on.
-
-    Raises:
-        ExperimentError: it does.
-    """
+    """Press with all the current: what was only held up by its weight or by friction goes on."""
     stood_rad = joint.reading.sample.position_rad
     for _ in range(ceil(homing.stand_s / configuration.control.period_s)):
         reading = yield from joint.push(Command(Mode.CURRENT, homing.direction * homing.current_a))

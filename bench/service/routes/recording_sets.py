@@ -88,11 +88,7 @@ async def guess_set(
 
 @asynccontextmanager
 async def _upload(request: Request, name: str) -> AsyncIterator[Path]:
-    """The body as a file, which is removed afterwards; errors name it as its sender does.
-
-    Raises:
-        HTTPException: 408, 413, 415; 503, there is no room for it.
-    """
+    """The body as a file, which is removed afterwards; errors name it as its sender does."""
     _check_is_zip(request)
     try:
         with tempfile.TemporaryDirectory(prefix="friction-bench-") as folder:

@@ -64,11 +64,7 @@ def read_data_sheet(path: Path) -> DataSheet:
 
 
 def _text(path: Path) -> str:
-    """Return the text of a file; one without a mark of its encoding is read byte by byte: only names may suffer.
-
-    Raises:
-        ValueError: it is XML, or not in the encoding that it names.
-    """
+    """Return the text of a file; one without a mark of its encoding is read byte by byte: only names may suffer."""
     data = path.read_bytes()
     encoding = next((name for mark, name in _ENCODINGS.items() if data.startswith(mark)), "latin-1")
     text = data.decode(encoding)
@@ -175,11 +171,7 @@ def _limit(text: str, whole: tuple[int, int]) -> int | None:
 
 
 def _field(section: SectionProxy, key: str, absent: str = "0") -> int:
-    """Return the number of a key.
-
-    Raises:
-        ValueError: it is none; with section, key and text.
-    """
+    """Return the number of a key."""
     text = section.get(key) or absent
     try:
         return _number(text)
