@@ -3,6 +3,8 @@
 import time
 from typing import Protocol
 
+_SPIN_S = 0.0002  # before the deadline; the operating system's wake-up is later than this now and then only
+
 
 class Clock(Protocol):
     """Paces control cycles."""
@@ -38,17 +40,12 @@ class WallClock:
 
     Deadlines lie on a grid, so lateness of one cycle does not shift the next. After a cycle that is late by more
     than a period the grid starts anew: cycles are lost, and counted, but never made up for in a burst.
-
-    Args:
-        spin_s: how long before the deadline to stop sleeping [s]; the operating system's wake-up is later than this
-            now and then only.
     """
 
     patience_s = 0.0
 
-    def __init__(self, spin_s: float = 0.0002) -> None:
+    def __init__(self) -> None:
         self.overruns = 0
-        self._spin_s = spin_s
         self._period_s = 0.0
         self._deadline_s = 0.0
 
@@ -65,7 +62,7 @@ class WallClock:
             self.overruns += int(-remaining_s / self._period_s)
             self._deadline_s -= remaining_s
             return
-        if remaining_s > self._spin_s:
-            time.sleep(remaining_s - self._spin_s)
+        if remaining_s > _SPIN_S:
+            time.sleep(remaining_s - _SPIN_S)
         while time.perf_counter() < self._deadline_s:
             pass

@@ -178,9 +178,9 @@ class Session:
         with suppress(Exception):
             self._nmt(_PRE_OPERATIONAL)
 
-    def keep_alive(self, now_s: float | None = None) -> None:
+    def keep_alive(self) -> None:
         """Give the host's sign of life if it is due."""
-        self.guard.sign(perf_counter() if now_s is None else now_s)
+        self.guard.sign(perf_counter())
 
     def ask_slow(self, now_s: float) -> None:
         """Send the request of the slow poll, if one is due."""

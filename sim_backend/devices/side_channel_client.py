@@ -6,13 +6,15 @@ from typing import Any
 
 from sim_backend.errors import ParameterError
 
+_ANSWER_S = 5.0  # longest wait for an answer
+
 
 class SideChannelClient:
     """A conversation with a simulated device, over its side channel."""
 
-    def __init__(self, address: str, timeout_s: float = 5.0) -> None:
+    def __init__(self, address: str) -> None:
         host, _, port = address.rpartition(":")
-        self._socket = socket.create_connection((host, int(port)), timeout_s)
+        self._socket = socket.create_connection((host, int(port)), _ANSWER_S)
         self._file = self._socket.makefile("rw", encoding="utf-8")
 
     def ask(self, deed: str, **values: Any) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from sim_backend.plant.plant import COARSEST_STEP_S, Plant
 _OFF, _CURRENT, _ENABLED = Mode.OFF, Mode.CURRENT, Status.ENABLED  # at hand: Python 3.11 takes 0.1 us to find them
 _TORQUE_DISABLED = "safe torque off is active; close its circuit, then enable"
 _WATCHDOG_FAULT = "watchdog: no command in time"
+WATCHDOG_S = 0.1  # without a command, after which the drive switches itself off
 
 
 class SimulatedDrive:
@@ -32,7 +33,6 @@ class SimulatedDrive:
         parameters: the joint, and what the drive measures of it.
         seed: of the plant's own randomness; the same seed and commands give the same samples, bit for bit.
         device: name used in messages.
-        watchdog_s: time without a command after which the drive switches itself off [s].
         faults: what goes wrong, and when in the drive's time.
 
     Raises:
@@ -40,16 +40,14 @@ class SimulatedDrive:
     """
 
     def __init__(
-        self, parameters: PlantParameters, seed: int = 0, device: str = "sim", watchdog_s: float = 0.1,
-        faults: Iterable[Fault] = (),
-    ) -> None:  # fmt: skip
+        self, parameters: PlantParameters, seed: int = 0, device: str = "sim", faults: Iterable[Fault] = ()
+    ) -> None:
         if parameters.wiring != Wiring():
             raise ParameterError("wiring: the drive in process has no leads to be swapped; simulate a device instead")
         self.plant = Plant(parameters, seed)
         self._brake = HoldingBrake(self.plant) if parameters.brake.torque_n_m > 0.0 else None
         self._seed = seed
         self._device = device
-        self._watchdog_s = watchdog_s
         self._open = False
         self._fault = ""
         self._switch(Status.DISABLED)
@@ -65,7 +63,7 @@ class SimulatedDrive:
 
     def describe(self) -> Description:
         """Identity and capabilities."""
-        return describe(self._device, self.plant.parameters, self._seed, self._modes, self._watchdog_s)
+        return describe(self._device, self.plant.parameters, self._seed, self._modes, WATCHDOG_S)
 
     def open(self, period_s: float) -> None:
         """Connect. The power stage stays off.
@@ -73,11 +71,11 @@ class SimulatedDrive:
         Raises:
             DriveConfigurationError: the period is shorter than a plant step, or longer than the watchdog waits.
         """
-        if not COARSEST_STEP_S <= period_s < self._watchdog_s:
+        if not COARSEST_STEP_S <= period_s < WATCHDOG_S:
             raise DriveConfigurationError(
                 self._device,
                 f"period {period_s:g} s: at least {COARSEST_STEP_S:g} s (a plant step) and less than "
-                f"{self._watchdog_s:g} s (the watchdog) is wanted; change the control period",
+                f"{WATCHDOG_S:g} s (the watchdog) is wanted; change the control period",
             )
         # the longest step that divides the period
         self._steps = ceil(period_s / COARSEST_STEP_S - 1e-9)
@@ -198,7 +196,7 @@ class SimulatedDrive:
         self.plant.hang(load)
 
     def idle(self, duration_s: float) -> None:
-        """Let time pass while nobody talks to the drive. After `watchdog_s` a powered drive switches itself off."""
+        """Let time pass while nobody talks to the drive. After `WATCHDOG_S` a powered drive switches itself off."""
         self._require_open("idle")
         for _ in range(round(duration_s / self._period_s)):
             self._pass_period()
@@ -243,7 +241,7 @@ class SimulatedDrive:
     def _pass_period(self) -> None:
         """Let a period pass under the last command, until the watchdog acts."""
         silent_s = self._silent_cycles * self._period_s
-        if self._status in (Status.ENABLED, Status.QUICK_STOP) and silent_s >= self._watchdog_s:
+        if self._status in (Status.ENABLED, Status.QUICK_STOP) and silent_s >= WATCHDOG_S:
             self._trip(_WATCHDOG_FAULT)
         stage, demand = self._held
         if self._script.faults and self._meet_faults():

@@ -1,7 +1,7 @@
 """What may go wrong on a bench, scripted in the drive's own time or by the wall clock."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from time import monotonic
 from typing import TypeVar
@@ -120,19 +120,14 @@ Kind = TypeVar("Kind", bound=Fault)
 
 
 class FaultScript:
-    """The faults of a run, in any order. Two of a kind may not overlap.
-
-    Args:
-        faults: what goes wrong.
-        wall: the wall clock [s]; for faults that go by it the script begins now.
+    """The faults of a run, in any order. Two of a kind may not overlap. For those by the wall clock it begins now.
 
     Raises:
         ParameterError: two of a kind overlap.
     """
 
-    def __init__(self, faults: Iterable[Fault] = (), wall: Callable[[], float] = monotonic) -> None:
-        self._wall = wall
-        self._origin_s = wall()
+    def __init__(self, faults: Iterable[Fault] = ()) -> None:
+        self._origin_s = monotonic()
         self.faults: list[Fault] = []
         for fault in sorted(faults, key=lambda one: one.start_s):
             self.add(fault)
@@ -170,7 +165,7 @@ class FaultScript:
 
     def time_of(self, fault: Fault, time_s: float) -> float:
         """Return the time by which a fault goes [s]: the drive's, as given, or the wall clock's."""
-        return self._wall() - self._origin_s if fault.by_the_wall else time_s
+        return monotonic() - self._origin_s if fault.by_the_wall else time_s
 
     def trip(self, time_s: float) -> Trip | None:
         """Return what switches the drive off at a time, or None."""

@@ -16,6 +16,7 @@ from compensator.rest.zero_speed_search import SearchReading
 from drivers.contract import Command, Mode
 
 _CURRENT = Mode.CURRENT  # at hand, see bench/control/cycle.py
+_REFLECTED_CYCLES = 20
 Result = TypeVar("Result")
 Part = Generator[Action, Reading, Result]
 
@@ -171,9 +172,9 @@ class Joint:
             travel_rad += abs(reading.sample.position_rad - last_rad)
         return replace(search.found(), seconds=reading.time_s - start_s, travel_rad=travel_rad)
 
-    def reflect(self, target_rad: float, load_current_a: float, half_width_a: float, cycles: int = 20) -> Part[None]:
+    def reflect(self, target_rad: float, load_current_a: float, half_width_a: float) -> Part[None]:
         """Hold an angle, and record the compensated current that the master would be given, with its interval."""
-        for _ in range(cycles):
+        for _ in range(_REFLECTED_CYCLES):
             self._reading = yield self._towards(target_rad, load_current_a=load_current_a, half_width_a=half_width_a)
 
     def _towards(

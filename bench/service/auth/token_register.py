@@ -33,18 +33,11 @@ class TokenRegister:
     Args:
         fixed: tokens by name, all of them admins.
         stored: reads those of the store.
-        now: the time, UTC.
     """
 
-    def __init__(
-        self,
-        fixed: Mapping[str, str],
-        stored: Callable[[], Sequence[AccessToken]] = list,
-        now: Callable[[], datetime] = lambda: datetime.now(UTC),
-    ) -> None:
+    def __init__(self, fixed: Mapping[str, str], stored: Callable[[], Sequence[AccessToken]] = list) -> None:
         self._fixed = [FixedToken(name, digest_of(token)) for name, token in fixed.items()]
         self._read = stored
-        self._now = now
         self._stored: Sequence[AccessToken] = ()
 
     def refresh(self) -> None:
@@ -53,7 +46,7 @@ class TokenRegister:
 
     def caller(self, presented: str) -> Caller | None:
         """Whose it is; None where it is nobody's. Takes the same time whichever digests differ, and wherever."""
-        digest, moment = digest_of(presented), self._now()
+        digest, moment = digest_of(presented), datetime.now(UTC)
         found: Caller | None = None
         known: list[FixedToken | AccessToken] = [*self._fixed, *self._stored]
         for token in known:

@@ -60,9 +60,9 @@ class Retention:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def expired(self, policy: Policy, at_utc: datetime | None = None) -> list[Expired]:
+    def expired(self, policy: Policy) -> list[Expired]:
         """What the policy does not keep, oldest first. Nothing is removed."""
-        moment = at_utc or now()
+        moment = now()
         with self._database.reading() as connection:
             used = uses(connection)
             query = select(EXPERIMENT).where(

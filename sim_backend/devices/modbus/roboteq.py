@@ -18,7 +18,7 @@ from sim_backend.devices.modbus.register_file import (
 from sim_backend.faults.script import tripped
 from sim_backend.plant.parameters import PlantParameters
 
-WATCHDOG_S = 1.0  # RWD of the controller's configuration, as delivered
+WATCHDOG_S = 1.0  # silence after which the command becomes 0: RWD of the controller's configuration, as delivered
 _READ, _WRITE = 4, 16
 _WORDS = 2
 _MOTOR_COMMAND = 0x0001
@@ -33,14 +33,12 @@ class Roboteq(Device):
 
     Args:
         parameters: the joint on it.
-        watchdog_s: silence after which the command becomes 0 [s]; 0 is off.
         seed: of the plant.
     """
 
-    def __init__(self, parameters: PlantParameters, watchdog_s: float = WATCHDOG_S, seed: int = 0) -> None:
+    def __init__(self, parameters: PlantParameters, seed: int = 0) -> None:
         self.lock = RLock()
         self.axis = Axis(parameters, self, seed)
-        self._watchdog_s = watchdog_s
         self._command = 0
         self._told_s = 0.0
         self._timeouts = 0
@@ -53,13 +51,13 @@ class Roboteq(Device):
         return {
             "kind": "modbus, as a Roboteq",
             "command": self._command,
-            "watchdog_s": self._watchdog_s,
+            "watchdog_s": WATCHDOG_S,
             "watchdog_trips": self._timeouts,
         }
 
     def demand(self, seen: Sample) -> Demand:  # noqa: ARG002
         """Return what the stage does for the coming tick."""
-        if self._watchdog_s and self._command and self.axis.time_s - self._told_s > self._watchdog_s:
+        if self._command and self.axis.time_s - self._told_s > WATCHDOG_S:
             self._timeouts += 1
             self._command = 0
         if self.axis.trip() is not None or self.axis.torque_is_disabled():
