@@ -5,22 +5,8 @@ from datetime import datetime
 from typing import Any
 
 from bench.json_types import Values
-from compensator.lab.recordings.recording import Condition, Event
-
-__all__ = [
-    "HIDDEN",
-    "IMPORTING",
-    "OUTCOMES",
-    "REMOVING",
-    "SOURCES",
-    "CalibrationRow",
-    "Condition",
-    "Event",
-    "Experiment",
-    "ModelRow",
-    "StudyRow",
-    "Trial",
-]
+from compensator.lab.recordings.recording import Condition as Condition
+from compensator.lab.recordings.recording import Event as Event
 
 OUTCOMES = ("running", "completed", "stopped", "tripped", "failed", "interrupted", "refused")
 IMPORTING, REMOVING = "importing", "removing"

@@ -159,13 +159,7 @@ class FeetechDrive(ActuatorDrive[FeetechActuator]):
 
 
 def follow(settings: FeetechSettings, joint: JointScale, link: Path, period_s: float) -> ServoFollower:
-    """Stand between another program and the servo.
-
-    Args:
-        settings: which servo.
-        joint: scales and signs.
-        link: name of the port that the other program opens.
-        period_s: from one look to the next, at least [s].
+    """Stand between another program, which opens the port `link`, and the servo: a look each `period_s`, at least.
 
     Raises:
         DriveError: the port is not there or in use, nobody answers, or it is another servo than the rig's.
