@@ -26,6 +26,7 @@ LEAST_COHERENCE = 0.1  # less is no motion's
 LOWEST_HZ = 2.0
 MOTION_SHARE = 0.99
 SEGMENT_S = 4.0
+SURELY = 3.0  # times the noise: a spectral estimate from so few segments scatters so far once in a hundred (Welch 1967)
 HARMONICS = 4.0
 BANDS_PER_OCTAVE = 2
 PASSED = 1.5  # times the frequency of a ripple: the filter lets most of it through
@@ -68,7 +69,7 @@ def motion_bandwidth_hz(recordings: Sequence[Recording], effort: Effort, facts: 
         segment = min(len(signals.velocity), int(SEGMENT_S * signals.rate_hz))
         at, density = welch(signals.velocity, signals.rate_hz, nperseg=segment)
         noise = position_noise(recording, facts) * (2.0 * np.pi * at) ** 2
-        power += np.interp(frequencies, at, np.maximum(density - noise, 0.0), right=0.0)
+        power += np.interp(frequencies, at, np.where(density > SURELY * noise, density - noise, 0.0), right=0.0)
     share = np.cumsum(power) / max(float(power.sum()), np.finfo(float).tiny)
     return float(frequencies[min(int(np.searchsorted(share, MOTION_SHARE)), len(frequencies) - 1)])
 

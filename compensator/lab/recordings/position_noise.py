@@ -21,7 +21,7 @@ from compensator.lab.recordings.plain_columns import (
     stacked,
 )
 from compensator.lab.recordings.processing import make_signals, sample_rate_hz
-from compensator.lab.recordings.recording import Recording
+from compensator.lab.recordings.recording import FloatArray, Recording
 
 MOST = 0.01  # of the effort, as a good current sensor; the corner grows with its power of 0.4
 NOISE_ONLY = 0.75  # of half the sample rate: above, a position holds hardly any motion
@@ -37,8 +37,24 @@ def position_noise(recording: Recording, facts: Facts) -> float:
     even = np.arange(len(time_s)) / rate_hz + time_s[0]
     position = np.interp(even, time_s[finite], measured[finite])
     at_hz, density = welch(position, rate_hz, nperseg=min(len(position), max(int(SEGMENT_S * rate_hz), 1)))
-    above = density[at_hz > NOISE_ONLY * 0.5 * rate_hz]
-    return float(above.mean()) if len(above) else 0.0
+    above = at_hz > NOISE_ONLY * 0.5 * rate_hz
+    passed = _passed(even, time_s[finite], at_hz[above] / rate_hz)
+    return float(np.mean(density[above] / passed)) if above.any() else 0.0
+
+
+def _passed(even: FloatArray, time_s: FloatArray, per_sample: FloatArray) -> FloatArray:
+    """Share of white noise that is left between samples, where two that are weighted by 1 - w and w make a value.
+
+    Args:
+        even: times that values are wanted at.
+        time_s: of the samples.
+        per_sample: frequencies, in cycles per sample, shape (m,).
+    """
+    after = np.clip(np.searchsorted(time_s, even), 1, len(time_s) - 1)
+    weight = np.clip((even - time_s[after - 1]) / (time_s[after] - time_s[after - 1]), 0.0, 1.0)
+    mixed = float(np.mean(weight * (1.0 - weight)))
+    passed: FloatArray = 1.0 - 2.0 * mixed * (1.0 - np.cos(2.0 * np.pi * per_sample))
+    return passed
 
 
 def position_noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, motion_hz: float) -> float:

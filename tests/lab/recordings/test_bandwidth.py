@@ -24,6 +24,13 @@ def test_the_bandwidth_of_a_sine_is_its_frequency(frequency_hz):
     assert found == pytest.approx(frequency_hz, abs=0.5)  # two bins of the spectrum, of 0.25 Hz each
 
 
+def test_noise_of_the_position_is_no_motion_however_fast_it_was_sampled():
+    made, effort = swing(1.0, Bench(rate_hz=1000.0, quantum=0.0))
+    position = made[0].channels["position_rad"]
+    position[:] += 1e-3 * np.random.default_rng(2).standard_normal(len(position))
+    assert motion_bandwidth_hz(made, effort, FACTS, 200.0) < 5.0
+
+
 def test_quick_and_clean_motion_gets_a_wide_filter():
     made, effort = swing(3.0, Bench(noise=0.001))
     assert choose_cutoff_hz(made, effort, FACTS) > 8.0

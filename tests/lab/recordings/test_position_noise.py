@@ -44,6 +44,25 @@ def test_the_noise_is_that_of_a_uniform_age_times_the_speed():
         assert position_noise(one, FACTS) == pytest.approx(expected, rel=0.5)
 
 
+def unevenly(made, jitter: float):
+    """The same positions, each at a moment that is off by a share of the period, known to the recording."""
+    random = np.random.default_rng(9)
+    for one in made:
+        time_s, position = one.channels["time_s"], one.channels["position_rad"]
+        taken_s = time_s + jitter / RATE_HZ * np.clip(random.standard_normal(len(time_s)), -3.0, 3.0)
+        position[:] = np.interp(taken_s, time_s, position.copy())
+        time_s[:] = taken_s
+    return made
+
+
+def test_noise_of_samples_at_uneven_times_is_told_though_half_of_it_is_lost_between_them():
+    quantum = 2e-3
+    made = recordings(bench=Bench(rate_hz=RATE_HZ, quantum=0.0), trials=[Plan("wide", [(1.0, 0.31, 0.0)])])
+    (one,) = unevenly(made, jitter=0.1)
+    one.channels["position_rad"][:] = np.round(one.channels["position_rad"] / quantum) * quantum
+    assert position_noise(one, FACTS) == pytest.approx(quantum**2 / 12.0 * 2.0 / RATE_HZ, rel=0.3)
+
+
 def test_counts_are_noise_of_a_twelfth_of_their_square():
     quantum = 1e-3
     made = recordings(bench=Bench(rate_hz=RATE_HZ, quantum=quantum), trials=[Plan("wide", [(1.0, 0.31, 0.0)])])
