@@ -51,7 +51,7 @@ def remainder_of(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> Rem
         residual: of the chosen rows, shape (rows.sum(),).
         rows: chosen, shape (N,).
     """
-    residual = residual * bounded_influence(residual, np.ones(len(residual)))
+    residual = residual * bounded_influence(residual)
     trials = dataset.trial_index[rows]
     spectra = [
         _spectrum(dataset, trial, residual[trials == index])

@@ -32,7 +32,8 @@ class Gain:
 
     def in_words(self, before: float, after: float, digits: int = 1) -> str:
         """The gain and its interval, beside relative errors."""
-        evenly = "; rows that the others tell nothing of count little in it" if self.is_unlike(before, after) else ""
+        unlike = self.is_unlike(before, after)
+        evenly = "; rows that scatter, or that the others tell nothing of, count less" if unlike else ""
         ends = (round(one, digits + 2) + 0.0 for one in (self.value, self.low, self.high))  # nothing has no sign
         value, low, high = (f"{one:.{digits}%}" for one in ends)
         return f"gain {value}, 90 % interval {low} .. {high}{evenly}"

@@ -24,8 +24,8 @@ class HeldOut:
         unit: which independent unit (trial or block) each of these rows belongs to.
         relative: root of residual power over effort power.
         rms: root mean square residual, in the effort's unit.
-        doubt: variance of each row's prediction for not knowing the coefficients any better, unless a study names what
-            is held out, and because the model bends there (see `determination`), over that of its noise.
+        weight: of each row, by how little it scatters and how well its prediction is known (see `weights_of`); unless a
+            study names what is held out, less where the other rows tell little of the coefficients.
     """
 
     kind: HeldOutKind
@@ -35,7 +35,7 @@ class HeldOut:
     unit: IntArray
     relative: float
     rms: float
-    doubt: FloatArray = field(default_factory=lambda: np.zeros(1))
+    weight: FloatArray = field(default_factory=lambda: np.ones(1))
 
     def power_by_unit(self) -> FloatArray:
         """Sum of squared residuals of each independent unit, in order of its label."""
@@ -66,16 +66,16 @@ def on_even_terms(one: HeldOut, other: HeldOut) -> tuple[HeldOut, HeldOut]:
 
     Where a trial is the only one to tell of a coefficient, as the only one without load does of the arm alone, what the
     others make of it is a guess by any model, and would outweigh all that they do know; so would, beside a dead time,
-    rows without current. Weights are those of errors of known variance (Aitken 1935), the larger of the two models'.
-    Rows that are alike are left as they are.
+    rows without current, and a few rows where teeth fly. Weights are those of errors of known variance (Aitken 1935),
+    the larger of the two models'. Rows that are alike are left as they are.
     """
-    weight = 1.0 / np.sqrt(1.0 + np.broadcast_to(np.maximum(one.doubt, other.doubt), one.residual.shape))
+    weight = np.broadcast_to(np.minimum(one.weight, other.weight), one.residual.shape)
     first, second = (_weighted(error, weight) for error in (one, other))
     return first, second
 
 
 def _weighted(error: HeldOut, weight: FloatArray) -> HeldOut:
-    """The same, each of its rows multiplied by a weight, and nothing in doubt any more."""
+    """The same, each of its rows multiplied by a weight, and all alike then."""
     residual, effort = weight * error.residual, weight * error.effort
     relative = relative_error(residual, effort)
-    return replace(error, residual=residual, effort=effort, relative=relative, rms=rms(residual), doubt=np.zeros(1))
+    return replace(error, residual=residual, effort=effort, relative=relative, rms=rms(residual), weight=np.ones(1))

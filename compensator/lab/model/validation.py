@@ -10,7 +10,7 @@ from compensator.lab.model.fitted import Fit, trained_trials
 from compensator.lab.model.held_out_error import HeldOut, HeldOutKind, relative_error, rms
 from compensator.lab.model.linear import solve_without
 from compensator.lab.model.prediction import beyond_tangent
-from compensator.lab.model.weights import determination
+from compensator.lab.model.weights import weights_of
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import RowChoice
 
@@ -109,6 +109,5 @@ def _result(
     fit: Fit, kind: HeldOutKind, rows: BoolArray, residual: FloatArray, unit: IntArray, doubt: FloatArray
 ) -> HeldOut:
     """Errors of the chosen rows (n,), of which coefficients that are not known any better leave such doubt (n,)."""
-    effort = fit.dataset.effort[rows]
-    doubt = doubt + (1.0 / determination(fit)[rows] ** 2 - 1.0)
-    return HeldOut(kind, rows, residual, effort, unit, relative_error(residual, effort), rms(residual), doubt)
+    effort, weight = fit.dataset.effort[rows], weights_of(fit, rows, residual) / np.sqrt(1.0 + doubt)
+    return HeldOut(kind, rows, residual, effort, unit, relative_error(residual, effort), rms(residual), weight)

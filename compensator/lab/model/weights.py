@@ -66,41 +66,27 @@ class RowWeights:
         return found
 
 
-def determination(fit: Fit) -> FloatArray:
-    """How well a model determines the effort of every row, at most 1, shape (N,): less where it bends.
+def weights_of(fit: Fit, rows: BoolArray, residual: FloatArray) -> FloatArray:
+    """Factors for the chosen rows, shape (rows.sum(),): residuals so weighted have like variance, median 1.
 
-    Models are held against each other by what they know: beside a dead time, rows without current say nothing.
-    """
-    dataset = fit.dataset
-    if not dataset.is_bent:
-        return np.ones(len(dataset.effort))
-    every = np.ones(len(dataset.effort), dtype=bool)
-    return RowWeights.learnt(dataset, fit.residual, fit.training).determined(dataset, every)
-
-
-def row_weights(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> FloatArray:
-    """Factors for the chosen rows, shape (rows.sum(),), median 1.
-
-    Residuals so weighted, and by the rows' steadiness, have like variance.
+    How much rows of each kind scatter, and how well the model determines them, is learnt from the rows that the model
+    was fitted to. No row pulls harder than one of OUTLYING standard deviations (Huber 1964): a tooth that bounces off
+    its neighbour moves a row by tens of them, and says nothing of the effects looked for.
 
     Args:
-        dataset: of the rows.
-        residual: of all rows, shape (N,).
+        fit: of the model.
         rows: chosen, shape (N,).
+        residual: of the chosen rows, shape (rows.sum(),).
     """
-    return RowWeights.learnt(dataset, residual, rows).of(dataset, rows)
+    learnt = RowWeights.learnt(fit.dataset, fit.residual, fit.training)
+    weights = learnt.of(fit.dataset, rows) * fit.dataset.steadiness[rows]
+    found: FloatArray = weights * bounded_influence(residual * weights)
+    return found
 
 
-def bounded_influence(residual: FloatArray, weights: FloatArray) -> FloatArray:
-    """Factors of at most 1, shape (n,): no row pulls harder than one of OUTLYING standard deviations (Huber 1964).
-
-    A tooth that bounces off its neighbour moves a row by tens of them, and says nothing of the effects looked for.
-
-    Args:
-        residual: of the rows, shape (n,).
-        weights: of the same rows, shape (n,).
-    """
-    size = np.abs(residual * weights)
+def bounded_influence(residual: FloatArray) -> FloatArray:
+    """Factors of at most 1, shape (n,), by which no residual (n,) is beyond OUTLYING standard deviations."""
+    size = np.abs(residual)
     most = OUTLYING * NORMAL * float(np.median(size))
     factors: FloatArray = max(most, TINY) / np.maximum(size, max(most, TINY))
     return factors

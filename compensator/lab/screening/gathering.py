@@ -14,7 +14,7 @@ from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.order_search import Path
 from compensator.lab.model.prediction import with_own_prediction
-from compensator.lab.model.weights import bounded_influence, row_weights
+from compensator.lab.model.weights import weights_of
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.candidates import Candidates, Curves
@@ -47,8 +47,7 @@ def _ground(fit: Fit, show_in: MotionRows) -> "tuple[Candidates, _Builder]":
     dataset = with_own_prediction(fit.dataset, fit.terms)
     fit = replace(fit, dataset=dataset)
     rows = fit.training & dataset.in_regimes(show_in)
-    weights = row_weights(dataset, fit.residual, rows) * dataset.steadiness[rows]
-    weights = weights * bounded_influence(fit.residual[rows], weights)
+    weights = weights_of(fit, rows, fit.residual[rows])
     builder = _Builder(fit, show_in, rows, weights)
     curves = Curves(partial(free_curves, dataset), builder.weighted)
     return Candidates(fit, show_in, rows, weights, builder.bases, [], curves, {}), builder

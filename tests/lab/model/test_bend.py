@@ -99,8 +99,8 @@ def test_a_second_effect_is_found_beside_it(alone, both):
 
 
 def test_weights_go_over_residual_and_effort(both):
-    whole = replace(held_out(both), doubt=np.zeros(int(both.training.sum())))
-    half, other = on_even_terms(whole, replace(whole, doubt=np.full(len(whole.residual), 3.0)))
+    whole = replace(held_out(both), weight=np.ones(int(both.training.sum())))
+    half, other = on_even_terms(whole, replace(whole, weight=np.full(len(whole.residual), 0.5)))
     assert (half.rms, half.relative) == (other.rms, other.relative)
     assert half.rms == pytest.approx(0.5 * whole.rms)
     assert half.relative == pytest.approx(whole.relative)

@@ -75,10 +75,10 @@ def test_a_trial_that_no_other_tells_of_does_not_outweigh_what_they_do_tell():
     guess = np.where(before.unit == 0, 100.0, 0.0)
     spoilt = replace(after, residual=after.residual + guess)
     assert held_out_gain(before, spoilt).value < -10.0
-    evenly = held_out_gain(before, replace(spoilt, doubt=guess**2))
+    evenly = held_out_gain(before, replace(spoilt, weight=1.0 / np.sqrt(1.0 + guess**2)))
     assert evenly.value == pytest.approx(plain.value, abs=0.1)
-    assert predicts_better(replace(spoilt, doubt=guess**2), before)
-    assert held_out_gain(before, replace(after, doubt=np.zeros(len(guess)))) == plain
+    assert predicts_better(replace(spoilt, weight=1.0 / np.sqrt(1.0 + guess**2)), before)
+    assert held_out_gain(before, replace(after, weight=np.ones(len(guess)))) == plain
 
 
 @pytest.mark.parametrize(
@@ -88,4 +88,4 @@ def test_a_trial_that_no_other_tells_of_does_not_outweigh_what_they_do_tell():
 def test_a_gain_that_the_errors_beside_it_do_not_have_is_explained(gain, after, unlike):
     words = Gain(gain, gain - 0.1, gain + 0.1).in_words(0.1, after, 0)
     assert words.startswith(f"gain {gain:.0%}, 90 % interval")
-    assert ("rows that the others tell nothing of count little in it" in words) == unlike
+    assert ("rows that scatter, or that the others tell nothing of, count less" in words) == unlike

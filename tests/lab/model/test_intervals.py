@@ -6,7 +6,7 @@ from scipy.stats import binom
 
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.intervals import estimates
-from compensator.lab.model.weights import LIMITS, row_weights
+from compensator.lab.model.weights import LIMITS, RowWeights
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from tests.lab.synthetic import FACTS, Bench, Joint, Plan, plans, recordings
@@ -63,8 +63,8 @@ def test_rows_with_larger_residuals_weigh_less():
     acceleration = np.abs(dataset.rows_of([trial.motion.acceleration for trial in dataset.trials]))
     fast = acceleration > np.quantile(acceleration[rows], 0.75)
     residual = np.random.default_rng(1).standard_normal(len(rows)) * np.where(fast, 2.0, 1.0)
-    weights = row_weights(dataset, residual, rows)
+    weights = RowWeights.learnt(dataset, residual, rows).of(dataset, rows)
     assert np.median(weights[fast[rows]]) / np.median(weights[~fast[rows]]) == pytest.approx(0.5, rel=0.15)
     assert np.median(weights) == pytest.approx(1.0, rel=0.1)
-    extreme = row_weights(dataset, residual * np.where(fast, 1e3, 1.0), rows)
+    extreme = RowWeights.learnt(dataset, residual * np.where(fast, 1e3, 1.0), rows).of(dataset, rows)
     assert LIMITS[0] <= extreme.min() < extreme.max() <= LIMITS[1]

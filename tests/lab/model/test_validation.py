@@ -10,6 +10,7 @@ from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import HeldOut, on_even_terms, relative_error, rms
 from compensator.lab.model.validation import held_out, independent_units
+from compensator.lab.model.weights import weights_of
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from tests.lab.synthetic import FACTS, Joint, plans, recordings
@@ -50,7 +51,8 @@ def test_the_doubt_of_a_trial_is_what_the_others_leave_open_of_its_prediction(fi
         own = fit.training & (fit.dataset.trial_index == trial)
         rest = columns[fit.training & ~own]
         wanted = np.einsum("ij,jk,ik->i", columns[own], np.linalg.inv(rest.T @ rest), columns[own])
-        assert found.doubt[found.unit == trial] == pytest.approx(wanted, rel=1e-6)
+        weight = weights_of(fit, own, found.residual[found.unit == trial]) / np.sqrt(1.0 + wanted)
+        assert found.weight[found.unit == trial] == pytest.approx(weight, rel=1e-6)
 
 
 def test_the_only_trial_without_load_counts_little_and_one_that_is_repeated_as_it_is():

@@ -11,7 +11,7 @@ from compensator.lab.left_over.left_over import left_over
 from compensator.lab.left_over.remainder import remainder_of
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.weights import BENDS, RowWeights, determination, row_weights
+from compensator.lab.model.weights import BENDS, OUTLYING, RowWeights, weights_of
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
@@ -59,7 +59,8 @@ def test_rows_that_a_bent_model_does_not_determine_scatter_more_than_its_bend_sa
     steady = bent.dataset.steadiness[bent.training]
     before = rms_by_bend(bent, steady)
     assert before[0] > 3.0 * before[1]
-    after = rms_by_bend(bent, steady * row_weights(bent.dataset, bent.residual, bent.training))
+    learnt = RowWeights.learnt(bent.dataset, bent.residual, bent.training)
+    after = rms_by_bend(bent, steady * learnt.of(bent.dataset, bent.training))
     assert 0.6 < after[0] / after[1] < 1.6  # a class of few rows is drawn to what all have
 
 
@@ -79,17 +80,16 @@ def test_determined_rows_are_those_that_do_not_bend(bent, straight):
     assert (learnt.determined(straight.dataset, straight.training) == 1.0).all()
 
 
-def test_models_are_held_against_each_other_by_rows_that_they_determine(straight):
+def test_models_are_held_against_each_other_by_rows_that_they_determine():
     """A smaller effect beside a dead time: what a duty does that makes no current would hide its gain."""
     random = np.random.default_rng(7)
     joint = Joint(extra=lambda x: WAVE * np.cos(6.0 * x.q) * np.sign(x.v))
     made = [estimated(one, random) for one in recordings(joint, Bench(noise=0.002), seed=3)]
     fit = fit_model(make_dataset(made, FACTS, Processing()), [*default_effects(FACTS), "dead_time"])
     gathered = with_noise(gather(fit))
-    found = gathered.screened(gathered.named).evidence
-    wave = examine(fit, gathered, [one for one in found if one.block.name == "position_periodic_friction"][:1])[0]
-    assert wave.gain.low > 0.15
-    assert (determination(straight) == 1.0).all()
+    screening = gathered.screened(gathered.named)
+    waves = [one for one in screening.evidence if one.block.name == "position_periodic_friction"]
+    assert examine(fit, gathered, screening, waves[:1])[0].gain.low > 0.15
 
 
 def test_where_nothing_bends_residuals_of_each_kind_have_like_variance(straight):
@@ -97,6 +97,17 @@ def test_where_nothing_bends_residuals_of_each_kind_have_like_variance(straight)
     acceleration = np.abs(straight.dataset.rows_of([trial.motion.acceleration for trial in straight.dataset.trials]))
     fast = acceleration > np.quantile(acceleration[straight.training], 0.75)
     scatter = np.where(fast, 2.0, 1.0) * noisy / noisy.std()
-    weighted = row_weights(straight.dataset, scatter, straight.training) * scatter[straight.training]
+    learnt = RowWeights.learnt(straight.dataset, scatter, straight.training)
+    weighted = learnt.of(straight.dataset, straight.training) * scatter[straight.training]
     sides = [np.std(weighted[side[straight.training]]) for side in (fast, ~fast)]
     assert sides[0] == pytest.approx(sides[1], rel=0.2)
+
+
+def test_no_row_pulls_harder_than_an_outlying_one(straight):
+    """Teeth that fly move a few rows by many times what the others scatter."""
+    residual = straight.residual[straight.training].copy()
+    usual = weights_of(straight, straight.training, residual) * residual
+    residual[::100] *= 1000.0
+    weighted = np.abs(weights_of(straight, straight.training, residual) * residual)
+    assert weighted.max() < 1.1 * OUTLYING * np.std(usual)
+    assert weighted[1::100] == pytest.approx(np.abs(usual[1::100]), rel=1e-6)
