@@ -47,16 +47,15 @@ def why_impossible(fit: Fit, name: str) -> Impossible:
 
 
 def _held(dataset: Dataset, term: Term) -> Impossible | None:
-    """That a bound holds a coefficient that would be less, or of the other sign; None where none is held so."""
+    """That bounds hold all coefficients that would be less, or of the other sign; None where one is not held so."""
     ranges = term.effect.ranges_in(dataset.effort_definition.quantity)
-    for parameter, value, held, (low, _) in zip(
-        term.effect.parameters, term.coefficients, term.at_bound, ranges, strict=True
-    ):
-        if held and (value <= low or value == 0.0):
-            way = "less" if value <= low else "more"
-            words = f"its {parameter.name} would have to be {way} than {_with_unit(dataset, value, parameter)}"
-            return Impossible(words, SIZE if value else SIGN)
-    return None
+    lowest = [value <= low for value, (low, _) in zip(term.coefficients, ranges, strict=True)]
+    wrong = np.array(lowest) | (term.coefficients == 0.0)
+    if not np.all(term.at_bound & wrong):
+        return None
+    parameter, value, way = term.effect.parameters[0], term.coefficients[0], "less" if lowest[0] else "more"
+    words = f"its {parameter.name} would have to be {way} than {_with_unit(dataset, value, parameter)}"
+    return Impossible(words, SIZE if value else SIGN)
 
 
 def _shape(effect: Effect, dataset: Dataset, shape: Shape, at: int = 0) -> str:

@@ -174,7 +174,10 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "warm_up": ((40.0,), lambda m: [np.exp(-(m.time_s + 30.0) / 40.0) * np.sign(m.velocity)]),
     "frictional_lag": (
         (0.5, 0.05),
-        lambda m: [np.sign(m.velocity) * behind(np.exp(-np.abs(m.velocity) / 0.5), m, 0.05)],
+        lambda m: [
+            np.sign(m.velocity) * behind(level, m, 0.05)
+            for level in (np.exp(-np.abs(m.velocity) / 0.5), np.abs(m.velocity))
+        ],
     ),
     "pre_sliding": ((0.1,), lambda m: [dahl(m.position, 0.1)]),
     "backlash": ((0.3, 1.0), crossing),

@@ -4,7 +4,7 @@ from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.effects.round_the_turn import orders, waves
 from compensator.lab.recordings.recording import FloatArray
 
-MOTOR_ORDERS = (1, 2, 4, 6, 8, 10, 12, 14, 18, 20, 24, 28, 30, 36)  # poles, slots, and their common multiples
+MOTOR_ORDERS = range(1, 37)  # poles, slots, commutator bars, and their common multiples
 
 
 def shapes(motion: Motion) -> list[Shape]:

@@ -17,12 +17,11 @@ def shapes(motion: Motion) -> list[Shape]:
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
-    """How much more dry friction there is than at this speed for long, for shape (v_s, tau)."""
+    """How much more dry and viscous friction there is than at this speed for long, for shape (v_s, tau)."""
     speed, lag_s = shape
-    settled = np.exp(-np.abs(motion.velocity) / speed)
+    fast = np.abs(motion.velocity)
     fade = np.exp(-motion.step_s / lag_s)
-    found: FloatArray = motion.direction * (_late(settled, fade) - settled)
-    return found[None]
+    return np.array([motion.direction * (_late(settled, fade) - settled) for settled in (np.exp(-fast / speed), fast)])
 
 
 @njit(cache=True)
@@ -44,12 +43,18 @@ EFFECT = Effect(
     name="frictional_lag",
     title="Frictional lag",
     physics=(
-        "Friction follows a change of speed late, as the film between the surfaces thickens and thins: it is "
-        "larger while the speed rises than while it falls."
+        "Friction follows a change of speed late, as the film between the surfaces thickens and thins: dry friction "
+        "is larger while the speed rises than while it falls, and viscous friction smaller."
     ),
-    equation=r"c\,(s - e^{-|\dot q|/v_s})\,\mathrm{sgn}(\dot q),\quad \tau\,\dot s = e^{-|\dot q|/v_s} - s",
+    equation=(
+        r"(c\,(s - e^{-|\dot q|/v_s}) + b\,(u - |\dot q|))\,\mathrm{sgn}(\dot q),\quad "
+        r"\tau\,\dot s = e^{-|\dot q|/v_s} - s,\ \tau\,\dot u = |\dot q| - u"
+    ),
     columns=columns,
-    parameters=(Parameter("friction that lags", "{effort}", 0.0),),
+    parameters=(
+        Parameter("dry friction that lags", "{effort}", 0.0),
+        Parameter("viscous friction that lags", "{effort} s/{position}", 0.0),
+    ),
     driver="acceleration",
     excited_by="slow motion whose speed rises and falls at several frequencies without reversing",
     source="Hess, Soom 1990; Armstrong, Dupont, Canudas de Wit 1994",
