@@ -220,4 +220,4 @@ def test_every_reason_against_an_effect_is_in_its_row(monkeypatch):
     _, columns, rows = shown[0]
     row = dict(zip(columns, rows[0], strict=True))
     assert row["why not"] == "may be luck, gain not sure"
-    assert row["p, alone#"] == "0.5"  # the sentence's is corrected for all screenings
+    assert row["p#"] == "0.5"

@@ -43,7 +43,7 @@ def diagnosis(found: "Diagnosis") -> None:
         for one in found.ranking
     ]
     if rows:
-        columns = ["effect", "named", "score#", "p, alone#", "held out before#", "after#", "gain#", "d'#", "why not"]
+        columns = ["effect", "named", "score#", "p#", "held out before#", "after#", "gain#", "d'#", "why not"]
         table(f"Effects by evidence: {ORDER}", columns, rows)
     if found.provisional:
         say(found.provisional.sentence)

@@ -67,7 +67,7 @@ class Ranked(StudyModel):
     effect: str
     title: str
     score: Number
-    p_value: Number = Field(description=f"of this effect alone, not corrected for what else is screened; {LEAST_P}")
+    p_value: Number = Field(description=f"of so much for any effect that was tried, if nothing were missing; {LEAST_P}")
     held_out_before: Number
     held_out_after: Number
     gain: Number

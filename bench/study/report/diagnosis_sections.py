@@ -45,7 +45,7 @@ def diagnosis_section(title: str, found: Diagnosis, compared: Comparison) -> Sec
         "effect",
         "named",
         "score#",
-        "p, alone#",
+        "p#",
         "held out before#",
         "then#",
         "gain, 90 % interval",

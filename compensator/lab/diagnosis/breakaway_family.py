@@ -80,11 +80,10 @@ def breakaway_answer(
         return Answer("nothing", "", 1.0, [], None, []), left_out
     before = held_out_breakaway(base)
     ranked = sorted(
-        (_candidate(one, before, judged, bases, blocks) for one in judged),
-        key=lambda one: not (is_confirmed(one) and _shows_where_due(one, sliding)),
+        (_held_against(_candidate(one, before, judged, bases, blocks), sliding) for one in judged),
+        key=lambda one: not is_confirmed(one),
     )
-    p_value = among_all(screening.p_value)
-    found = p_value <= SIGNIFICANT and is_confirmed(ranked[0]) and _shows_where_due(ranked[0], sliding)
+    p_value, found = ranked[0].p_value, is_confirmed(ranked[0])
     stretches = len(np.unique(unit))
     sentence = _sentence(ranked[0], p_value, int(rows.training.sum()), stretches) if found else ""
     notes = [] if found else _too_few(stretches)
@@ -138,10 +137,12 @@ def breakaway_blocks(base: BreakawayFit, wanted: Sequence[Effect]) -> tuple[list
     return blocks, bases, left_out
 
 
-def _shows_where_due(candidate: Candidate, sliding: Mapping[str, float] | None) -> bool:
-    """Whether steady sliding does not speak against an effect that shows there, too."""
-    due = sliding is not None and candidate.effect.rows == "sliding"
-    return not due or (sliding or {}).get(candidate.effect.name, 1.0) <= SIGNIFICANT
+def _held_against(candidate: Candidate, sliding: Mapping[str, float] | None) -> Candidate:
+    """The candidate, refused where steady sliding speaks against an effect that shows there, too."""
+    if sliding is None or candidate.effect.rows != "sliding":
+        return candidate
+    shown = sliding.get(candidate.effect.name, 1.0) <= SIGNIFICANT
+    return candidate if shown else replace(candidate, refused="steady sliding does not show it")
 
 
 def _over_one_model(base: BreakawayFit, bases: list[Base], evidence: list[Evidence]) -> list[Evidence]:
@@ -190,7 +191,7 @@ def _candidate(
         effect=one.effect,
         shape=one.item.block.shape,
         score=one.item.score,
-        p_value=one.item.p_value,
+        p_value=among_all(one.item.p_value),
         detectability=detectability(one.item, nearest),
         rivals=tuple(sorted(rivals)),
         before=before.relative,

@@ -11,8 +11,8 @@ from compensator.lab.screening.evidence import VERY_STRONG
 SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
 SLIGHT_PART = 0.05  # of what effects that were added explain, root mean square: a formula is rarely right to more
 LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
-LUCK, LUCK_AMONG_ALL, UNSURE_GAIN = "may be luck", "may be luck among all that was tried", "gain not sure"
-LEAST_GAIN_OF_CHAIN = 0.05  # every measuring chain is a little late, and leaves a little near reversals
+UNSURE_GAIN = "gain not sure"
+LEAST_GAIN_OF_CHAIN = 0.05  # every measuring chain bends a little, is a little late, and leaves a little near reversals
 
 
 def is_confirmed(candidate: Candidate) -> bool:
@@ -32,7 +32,7 @@ def doubts(candidate: Candidate) -> list[str]:
     least = LEAST_GAIN_OF_CHAIN if chain else LEAST_GAIN
     asked = {
         "score not above 0": candidate.score > 0.0,
-        LUCK: candidate.p_value <= SIGNIFICANT,
+        "may be luck": candidate.p_value <= SIGNIFICANT,
         f"explains under {LEAST_OF_EFFORT:.2%} of the effort": explained >= LEAST_OF_EFFORT**2,
         f"gain under {least:.1%}": gain.value >= least,
         UNSURE_GAIN: gain.low > 0.0,
@@ -42,9 +42,8 @@ def doubts(candidate: Candidate) -> list[str]:
 
 
 def nearest_one(candidates: Sequence[Candidate]) -> Candidate | None:
-    """Of effects that are not confirmed, that with the most evidence, where more data may confirm it; None without."""
-    open_yet = {LUCK, LUCK_AMONG_ALL, UNSURE_GAIN}
-    near = [one for one in candidates if one.score > VERY_STRONG and set(doubts(one)) <= open_yet]
+    """Of effects that are no luck and not sure to help, that with the most evidence; None without."""
+    near = [one for one in candidates if one.score > VERY_STRONG and doubts(one) == [UNSURE_GAIN]]
     return max(near, key=lambda one: one.score, default=None)
 
 

@@ -37,7 +37,7 @@ class Candidate:
     Attributes:
         effect: which; shape: its best nonlinear shape.
         score: evidence for naming, in units of 2 ln L after the price of parameters and shapes.
-        p_value: of this effect alone, robust against autocorrelation.
+        p_value: chance of so much evidence for any effect that was tried, if nothing were missing.
         detectability: d', how far the data can tell it from its nearest rival.
         rivals: effects whose evidence mostly vanishes once this one is in the model.
         before, after: relative held-out error without and with it.

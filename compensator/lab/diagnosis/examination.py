@@ -20,7 +20,7 @@ from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.screening.base import Block
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Evidence, kept_evidence, new_directions
+from compensator.lab.screening.evidence import Evidence, Screening, among_all, kept_evidence, new_directions
 
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
@@ -35,13 +35,14 @@ def best_shapes(evidence: list[Evidence]) -> list[Evidence]:
     return list(own.values())
 
 
-def examine(fit: Fit, gathered: Candidates, screened: list[Evidence]) -> list[Candidate]:
+def examine(fit: Fit, gathered: Candidates, screening: Screening, screened: list[Evidence]) -> list[Candidate]:
     """Candidates in the model that would be had, all shapes found anew there; confirmed first, each by score.
 
     Args:
         fit: the model.
         gathered: what it may be missing, and the noise.
-        screened: evidence for the best scanned shape of each effect.
+        screening: of all that was tried.
+        screened: of it, evidence for the best scanned shape of each effect.
     """
     before = _held_out(fit, gathered.show_in)
     sliding = None if gathered.show_in == "sliding" else fit_sliding(fit.dataset, fit.names, fit.training, fit.shapes)
@@ -62,7 +63,7 @@ def examine(fit: Fit, gathered: Candidates, screened: list[Evidence]) -> list[Ca
                 effect=effect_named(item.block.name),
                 shape=item.block.shape,
                 score=item.score,
-                p_value=item.p_value,
+                p_value=among_all(screening.chance(item.p_value)),
                 detectability=detectability(item, max(alike.values(), default=0.0)),
                 rivals=tuple(sorted(rivals)),
                 before=before.relative,

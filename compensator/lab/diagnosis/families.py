@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass, replace
 
-from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
-from compensator.lab.diagnosis.confirmation import LUCK_AMONG_ALL, is_confirmed
+from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import FORMULA_SHARE, best_shapes, examine, explains
 from compensator.lab.diagnosis.remaining import what_remains, without_a_name
@@ -36,7 +35,7 @@ def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screeni
     if not shapes:
         return Answer("nothing", nothing_in_words(1.0), 1.0, [], None, [])
     shown = [item for item in shapes if item.score > 0.0][:EXAMINED]
-    examined = examine(fit, gathered, shown if len(shown) >= FEWEST_SHOWN else shapes[:FEWEST_SHOWN])
+    examined = examine(fit, gathered, named, shown if len(shown) >= FEWEST_SHOWN else shapes[:FEWEST_SHOWN])
     family = _Family(gathered, named, shapes, examined)
     return family.curve(generic) or family.name() or family.nothing(generic)
 
@@ -83,12 +82,8 @@ class _Family:
         """The answer that a candidate is; else what speaks against it beside its own numbers."""
         if not is_confirmed(candidate):
             return ""
-        assert self.named.chance is not None
         assert candidate.evidence is not None
         assert candidate.explained is not None
-        chance = among_all(self.named.chance(candidate.p_value))
-        if chance > SIGNIFICANT:
-            return LUCK_AMONG_ALL
         found = next(item for item in self.shapes if item.block.name == candidate.effect.name)
         near_reversals = self.gathered.show_in != "sliding"
         if near_reversals and candidate.evidence.noncentrality < FORMULA_SHARE * found.noncentrality:
@@ -97,8 +92,9 @@ class _Family:
             return f"explains little beside {shadow_of}, which cannot be it"
         others = [one for one in self.examined if one is not candidate]
         notes = what_remains(candidate.explained, self.gathered, candidate.effect.name)
-        sentence = missing_in_words(candidate, chance) + (partly_in_words(candidate) if notes else "")
-        return Answer("missing", sentence, chance, [candidate, *others], None, notes, bool(notes), self.gathered)
+        sentence, p_value = missing_in_words(candidate), candidate.p_value
+        sentence += partly_in_words(candidate) if notes else ""
+        return Answer("missing", sentence, p_value, [candidate, *others], None, notes, bool(notes), self.gathered)
 
     def _shadow_of(self, one: Evidence) -> str:
         """What explains more, though it cannot be the effect, and explains what this one does; empty without.

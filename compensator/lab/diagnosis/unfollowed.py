@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from compensator.lab.chance import SIGNIFICANT
-from compensator.lab.diagnosis.confirmation import LEAST_GAIN
+from compensator.lab.diagnosis.confirmation import LEAST_GAIN_OF_CHAIN
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis, Picture
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.effects.effect import Effect
@@ -43,7 +43,8 @@ def unfollowed(gathered: Candidates, generic: Screening, examined: list[Candidat
         return None
     fit = gathered.fit
     errors = held_out(with_columns(fit, curve.block.name, gathered.curves.columns[curve.block.name]))
-    if held_out_gain(held_out(fit), errors).low < LEAST_GAIN:
+    gain = held_out_gain(held_out(fit), errors)
+    if gain.low <= 0.0 or gain.value < LEAST_GAIN_OF_CHAIN:
         return None
     models = [one.explained for one in examined if one.physical and one.explained is not None] if followed else []
     return curve if all(predicts_better(errors, held_out(model)) for model in models) else None

@@ -11,12 +11,12 @@ HALF = 0.5  # of the error's power
 LOOK_AT_HOSES = "Look at hoses, cables and seals that bend with the joint."
 
 
-def missing_in_words(best: Candidate, p_value: float) -> str:
+def missing_in_words(best: Candidate) -> str:
     """The answer where an effect is missing, with its numbers."""
     gain, where = best.gain.in_words(best.before, best.after, 0), ", near reversals too," * (best.rows == "moving")
     return (
         f"{named_in_words(best, 'trials')}: adding it changes the held-out error{where} from {best.before:.2%} to "
-        f"{best.after:.2%} ({gain}; {chance_in_words(p_value)})."
+        f"{best.after:.2%} ({gain}; {chance_in_words(best.p_value)})."
     )
 
 

@@ -5,7 +5,7 @@ autocorrelation for detection, and (elsewhere) the held-out gain. See docs/expla
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -29,7 +29,7 @@ class Evidence:
         block: the candidate.
         score: log-likelihood gain in units of 2 ln L, less the price of its parameters and shapes; > 0 speaks for it.
         noncentrality: the gain itself.
-        p_value: of this block alone.
+        p_value: of this block alone; of one at starts from rest, of as good a score in any block screened.
         direction: the block's own contribution after projection, unit norm, shape (n,).
     """
 
@@ -47,12 +47,12 @@ class Screening:
     Attributes:
         evidence: of all blocks.
         p_value: the chance that luck alone brings the own p-value of any block screened down to the least of them.
-        chance: the same of another p-value than the least; None of starts from rest, whose flips are few.
+        chance: the same of any p-value (Westfall, Young 1993); those of starts from rest are that already.
     """
 
     evidence: list[Evidence]
     p_value: float
-    chance: Callable[[float], float] | None = None
+    chance: Callable[[float], float] = float
 
 
 def screen(bases: Sequence[Base], blocks: Sequence[Block], known_from: int) -> Screening:
@@ -142,8 +142,10 @@ def screen_events(
         scores = gains - _price(block, rank - replaced, independent)
         highest = np.maximum(highest, scores)
         gain = max(float(gains[0]), 0.0)
-        evidence.append(Evidence(block, float(scores[0]), gain, _rank(scores), _contribution(base, directions)))
-    return Screening(sorted(evidence, key=lambda item: -item.score), _rank(highest))
+        evidence.append(Evidence(block, float(scores[0]), gain, 1.0, _contribution(base, directions)))
+    ranked = sorted(evidence, key=lambda item: -item.score)
+    ranked = [replace(item, p_value=_share_reaching(item.score, highest)) for item in ranked]
+    return Screening(ranked, ranked[0].p_value if ranked else 1.0)
 
 
 def _gains_in_place(whole: Base, part: Base, directions: FloatArray, signs: FloatArray) -> FloatArray:
@@ -161,9 +163,9 @@ def _gains_in_place(whole: Base, part: Base, directions: FloatArray, signs: Floa
     return gains
 
 
-def _rank(statistics: FloatArray) -> float:
-    """The share of flips, with what was measured among them, that reach what was measured (the first)."""
-    return float(np.mean(statistics >= statistics[0] - 1e-9 * abs(statistics[0])))
+def _share_reaching(score: float, highest: FloatArray) -> float:
+    """The share of flips (f,), with what was measured among them, whose highest score reaches one."""
+    return float(np.mean(highest >= score - 1e-9 * abs(score)))
 
 
 def among_all(p_value: float) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis import unfollowed
-from compensator.lab.diagnosis.confirmation import LEAST_GAIN
+from compensator.lab.diagnosis.confirmation import LEAST_GAIN_OF_CHAIN
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.search import search
 from compensator.lab.effects.catalogue import default_effects
@@ -55,8 +55,8 @@ def test_friction_of_the_load_of_another_form_is_unknown(friction):
     assert "load_friction" in [one.effect.name for one in found.candidates]
 
 
-@pytest.mark.parametrize(("low", "unknown"), [(0.9 * LEAST_GAIN, False), (1.1 * LEAST_GAIN, True)])
-def test_a_curve_is_of_use_on_other_trials_for_sure_or_no_unknown_effect(monkeypatch, low, unknown):
+@pytest.mark.parametrize(("gain", "low", "unknown"), [(0.9, 0.01, False), (1.1, 0.01, True), (1.1, -0.01, False)])
+def test_a_curve_is_of_use_on_other_trials_for_sure_or_no_unknown_effect(monkeypatch, gain, low, unknown):
     fit = fit_to(lambda x: 0.05 * np.exp(-(((x.q - 0.4) / 0.08) ** 2)) * np.sign(x.v))
-    monkeypatch.setattr(unfollowed, "held_out_gain", lambda *_: Gain(0.02, low, 0.03))
+    monkeypatch.setattr(unfollowed, "held_out_gain", lambda *_: Gain(gain * LEAST_GAIN_OF_CHAIN, low, 0.1))
     assert (diagnose(fit).verdict == "unknown-effect") == unknown
