@@ -54,7 +54,7 @@ ABSORBED = {"asymmetric_coulomb": "offset", "emf_sheet": "viscous"}
 LAWS: dict[str, str] = {
     "bristle_rad": "pre_sliding",
     "viscous_power": "viscous_power",
-    "film_rad_s": "frictional_lag",
+    "film_rad_s": "viscous_power",
     "path_scatter": "position_periodic_friction",
 }
 """Quantity of a joint's own friction that is not as in textbooks -> effect of the catalogue that it is."""
