@@ -80,7 +80,7 @@ def breakaway_answer(
         return Answer("nothing", "", 1.0, [], None, []), left_out
     before = held_out_breakaway(base)
     ranked = sorted(
-        (_held_against(_candidate(one, before, judged, bases, blocks), sliding) for one in judged),
+        (held_against(_candidate(one, before, judged, bases, blocks), sliding) for one in judged),
         key=lambda one: not is_confirmed(one),
     )
     p_value, found = ranked[0].p_value, is_confirmed(ranked[0])
@@ -137,7 +137,7 @@ def breakaway_blocks(base: BreakawayFit, wanted: Sequence[Effect]) -> tuple[list
     return blocks, bases, left_out
 
 
-def _held_against(candidate: Candidate, sliding: Mapping[str, float] | None) -> Candidate:
+def held_against(candidate: Candidate, sliding: Mapping[str, float] | None) -> Candidate:
     """The candidate, refused where steady sliding speaks against an effect that shows there, too."""
     if sliding is None or candidate.effect.rows != "sliding":
         return candidate

@@ -10,8 +10,10 @@ from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
 from compensator.lab.at_rest.breakaway_regression import BACK, LAG, fit_breakaway, held_out_breakaway, lag_column
 from compensator.lab.at_rest.breakaway_rows import breakaway_rows
 from compensator.lab.at_rest.breakaways import resolution_of, starts_of
-from compensator.lab.diagnosis.breakaway_family import breakaway_answer
+from compensator.lab.diagnosis.breakaway_family import breakaway_answer, held_against
+from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fit import fit_model
 from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.processing import make_signals
@@ -116,6 +118,25 @@ def test_what_starts_back_the_way_it_came_after_short_rests_is_no_dwell():
     assert rows.rest_s[rows.turns_back].max() < rows.rest_s[~rows.turns_back].min()
     assert breakaway_answer(fit, rows)[0].verdict == "nothing"
     assert fit_breakaway(rows, fit.effects).coefficients_of(BACK)[0] == pytest.approx(-0.25 * STATIC, rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("name", "in_sliding", "refused"),
+    [
+        ("weight_friction", {"weight_friction": 0.5}, True),
+        ("weight_friction", {}, True),  # it hides in steady sliding
+        ("weight_friction", {"weight_friction": 0.001}, False),
+        ("dwell_strengthening", {}, False),  # it does not show there
+        ("weight_friction", None, False),  # nobody asked
+    ],
+)
+def test_a_start_is_not_believed_where_steady_sliding_shows_more_and_says_no(name, in_sliding, refused):
+    fit = ramp_fit(rising)
+    answer, _ = breakaway_answer(fit, breakaway_rows(fit))
+    one = replace(answer.candidates[0], effect=effect_named(name))
+    held = held_against(one, in_sliding)
+    assert is_confirmed(one)
+    assert is_confirmed(held) != refused
 
 
 def test_the_share_that_a_breakaway_model_finds_is_the_static_friction():
