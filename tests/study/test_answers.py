@@ -108,7 +108,7 @@ def test_the_numbers_of_all_answers_agree(story, study):
     added, best = story["add"], story["diagnose"].ranking[0]
     for change, rung in ((added.before, base), (added.after, better)):
         assert (change.training, change.held_out) == pytest.approx((rung.training, rung.held_out), rel=1e-9)
-    assert added.gain == pytest.approx(1 - better.held_out / base.held_out)
+    assert added.gain == pytest.approx(1 - better.held_out / base.held_out, abs=0.05)  # rows count by their scatter
     assert best.held_out_before == pytest.approx(base.held_out, rel=1e-9)
     assert best.held_out_after == pytest.approx(better.held_out, rel=1e-6)
     assert again.held_out == pytest.approx(base.held_out, rel=1e-6)
@@ -308,7 +308,7 @@ def test_an_effect_with_memory_is_judged_where_it_lives_and_the_ladder_where_the
 @pytest.mark.parametrize(("after", "told"), [(0.23, True), (0.0315, False)])
 def test_a_gain_unlike_the_errors_beside_it_says_why(after, told):
     sentence = _sentence("Adding", "spring", "held-out error", 0.21, after, Gain(0.85, 0.8, 0.9))
-    assert ("rows that scatter, or that the others tell nothing of, count less" in sentence) == told
+    assert ("each row counting by how well it is known" in sentence) == told
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,7 @@
-"""What a change of a model did to its error. Errors are relative (0..1); gain = 1 - after / before."""
+"""What a change of a model did to its error. Errors are relative (0..1).
+
+Gain is the fall of the held-out error, each row counting by how well it is known.
+"""
 
 from typing import Literal
 

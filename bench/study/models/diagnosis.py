@@ -62,7 +62,10 @@ class Picture(StudyModel):
 
 
 class Ranked(StudyModel):
-    """One effect of the ranking. Held-out errors are relative (0..1); gain = 1 - after / before."""
+    """One effect of the ranking.
+
+    Held-out errors are relative (0..1); gain is their fall, each row counting by how well it is known.
+    """
 
     effect: str
     title: str

@@ -9,12 +9,12 @@ from compensator.lab.recordings.recording import FloatArray
 
 RESAMPLES = 999
 CONFIDENCE = 0.90
-NOTABLE = 0.05  # of a gain: how far it is from that of the errors beside it, before somebody wonders why
+NOTABLE = 0.01  # of a gain: how far it is from that of the errors beside it, before somebody wonders why
 
 
 @dataclass(frozen=True, slots=True)
 class Gain:
-    """Relative fall of the held-out error, 1 - after / before, on even terms, with a 90 % interval.
+    """Relative fall of the held-out error, each row counting by how well it is known, with a 90 % interval.
 
     Attributes:
         value, low, high: of all independent units.
@@ -33,7 +33,7 @@ class Gain:
     def in_words(self, before: float, after: float, digits: int = 1) -> str:
         """The gain and its interval, beside relative errors."""
         unlike = self.is_unlike(before, after)
-        evenly = "; rows that scatter, or that the others tell nothing of, count less" if unlike else ""
+        evenly = ", each row counting by how well it is known" if unlike else ""
         ends = (round(one, digits + 2) + 0.0 for one in (self.value, self.low, self.high))  # nothing has no sign
         value, low, high = (f"{one:.{digits}%}" for one in ends)
         return f"gain {value}, 90 % interval {low} .. {high}{evenly}"
