@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.note import Note, Value
+from compensator.lab.diagnosis.unfollowed import helpful_curve
 from compensator.lab.effects.free_curve import AGAINST_MOTION, FORCE, TIMES_SPEED, way_of
 from compensator.lab.left_over.left_over import LeftOver, left_over, unexplained_in_words
 from compensator.lab.left_over.orders import recurring_in_words
@@ -43,15 +43,14 @@ def what_remains(fit: Fit, before: Candidates, name: str) -> list[Note]:
         name: of the effect.
     """
     grown = gather_curves(fit, before.show_in)
+    known = before.noise if np.array_equal(grown.rows, before.rows) else None
+    white = with_noise(grown) if known is None else grown.whitened(known)
+    if (found := helpful_curve(white, white.screened(white.curves.blocks))) is not None:
+        variable, way = way_of(found[0].block.name)
+        return [_structure_remains(name, DRIVERS[variable].title, way)]
     left = left_over(grown)
     if not left.is_more_than_noise:
         return []
-    known = before.noise if np.array_equal(grown.rows, before.rows) else None
-    white = with_noise(grown) if known is None else grown.whitened(known)
-    rest = white.screened(white.curves.blocks)
-    if rest.p_value <= SIGNIFICANT and rest.evidence[0].score > 0.0:
-        variable, way = way_of(rest.evidence[0].block.name)
-        return [_structure_remains(name, DRIVERS[variable].title, way)]
     if (line := left.line) is not None:
         text = f"After {name}, what is left {recurring_in_words(line, fit.dataset.facts)}."
         return [Note("recurs", text, {"effect": name, "order": line.order, "share": line.share})]

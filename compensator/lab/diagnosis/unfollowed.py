@@ -14,6 +14,7 @@ from compensator.lab.errors import NotApplicableError, UnusableDataError
 from compensator.lab.model.fit import fit_effects, widened, with_columns
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, held_out_gain, predicts_better
+from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.rows.picture import binned_mean
@@ -22,32 +23,45 @@ from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence, Screening, among_all
 
 
-def unfollowed(gathered: Candidates, generic: Screening, examined: list[Candidate]) -> Evidence | None:
-    """The free curve with the best evidence that no formula follows; None where all are followed.
+def helpful_curve(gathered: Candidates, generic: Screening) -> tuple[Evidence, HeldOut] | None:
+    """The free curve with the best evidence, and the held-out error with it; None where it is luck, or hardly helps.
 
-    It is no luck, and helps on other trials for sure: it has more coefficients than a formula, and every chain bends a
-    little of what it measures. Hysteresis is one thing, whatever imitates it: it is followed by what predicts as well.
+    It has more coefficients than a formula, and every chain bends a little of what it measures.
+
+    Args:
+        gathered: the model, and what it may be missing.
+        generic: evidence for free curves.
+    """
+    curve = next((one for one in generic.evidence[:1] if one.score > 0.0), None)
+    if curve is None or among_all(generic.chance(curve.p_value)) > SIGNIFICANT:
+        return None
+    fit, name = gathered.fit, curve.block.name
+    errors = held_out(with_columns(fit, name, gathered.curves.columns[name]))
+    gain = held_out_gain(held_out(fit), errors)
+    return (curve, errors) if gain.low > 0.0 and gain.value >= LEAST_GAIN_OF_CHAIN else None
+
+
+def unfollowed(gathered: Candidates, generic: Screening, examined: list[Candidate]) -> Evidence | None:
+    """The helpful curve that no formula follows; None where all are followed.
+
+    Hysteresis is one thing, whatever imitates it: it is followed by what predicts as well.
 
     Args:
         gathered: the model, and what it may be missing.
         generic: evidence for free curves.
         examined: candidates, best first.
     """
-    curve = generic.evidence[0]
-    if among_all(generic.p_value) > SIGNIFICANT or curve.score <= 0.0 or curve.p_value > SIGNIFICANT:
+    found = helpful_curve(gathered, generic)
+    if found is None:
         return None
+    curve, errors = found
     evidence = examined[0].evidence.noncentrality if examined[0].evidence is not None else 0.0
     followed = examined[0].physical and evidence >= FORMULA_SHARE * curve.noncentrality
+    if not followed:
+        return curve
+    models = [one.explained for one in examined if one.physical and one.explained is not None]
     hysteresis = curve.block.name == HYSTERESIS_DRIVER
-    if followed and not hysteresis:
-        return None
-    fit = gathered.fit
-    errors = held_out(with_columns(fit, curve.block.name, gathered.curves.columns[curve.block.name]))
-    gain = held_out_gain(held_out(fit), errors)
-    if gain.low <= 0.0 or gain.value < LEAST_GAIN_OF_CHAIN:
-        return None
-    models = [one.explained for one in examined if one.physical and one.explained is not None] if followed else []
-    return curve if all(predicts_better(errors, held_out(model)) for model in models) else None
+    return curve if hysteresis and all(predicts_better(errors, held_out(model)) for model in models) else None
 
 
 @dataclass(frozen=True)

@@ -22,3 +22,21 @@ def test_friction_that_goes_round_is_told_beside_a_spring():
     assert (line.kind, round(line.order)) == (FRICTION, 6)
     before = with_noise(gather(fit_model(dataset, default_effects(FACTS))))
     assert {note.code for note in what_remains(fit, before, "spring")} & {"recurs", "structure-remains"}
+
+
+def beside_a_spring(extra):
+    dataset = make_dataset(recordings(Joint(extra=extra), seed=3), FACTS, Processing(cutoff_hz=8.0))
+    before = with_noise(gather(fit_model(dataset, default_effects(FACTS))))
+    fit = fit_model(dataset, [*default_effects(FACTS), "spring"])
+    return left_over(gather(fit)), what_remains(fit, before, "spring")
+
+
+def test_a_curve_that_helps_is_told_however_little_is_left():
+    """What a name does not explain may be under one percent of the effort, and of use all the same."""
+    left, notes = beside_a_spring(lambda x: 0.006 * np.exp(-(((x.q - 0.4) / 0.2) ** 2)) * np.sign(x.v))
+    assert not left.is_more_than_noise
+    assert [note.values["driver"] for note in notes] == ["position"]
+
+
+def test_beside_a_name_that_explains_all_nothing_is_told():
+    assert beside_a_spring(None)[1] == []
