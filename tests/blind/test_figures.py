@@ -184,8 +184,8 @@ def test_outside_is_sorted_by_what_it_leaves_unexplained() -> None:
 
 
 def test_of_pairs_those_that_are_clear_are_asked_for_and_flags_where_both_are_right() -> None:
-    def pair(named: tuple[str, ...], ratio: float = 0.5, unknown: bool = False) -> Result:
-        one = _result("pair", "spring", ("spring",), ratio, 9.0)
+    def pair(named: tuple[str, ...], ratio: float = 0.5, unknown: bool = False, d_prime: float = 9.0) -> Result:
+        one = _result("pair", "spring", ("spring",), ratio, d_prime)
         answer = LabAnswer("missing", named[:1], tuple((name,) for name in named), unknown, 0.001, 9.0, 0.021)
         return replace(
             one, answer=answer, truths=("spring", "drag"), names=("spring", "drag"), standings=one.standings * 2
@@ -194,13 +194,15 @@ def test_of_pairs_those_that_are_clear_are_asked_for_and_flags_where_both_are_ri
     results = [
         pair(("spring", "drag")),
         pair(("drag", "spring"), unknown=True),
-        pair(("spring",), unknown=True),
+        pair(("spring",), unknown=True, d_prime=5.0),  # not sure enough for both to be asked for
         pair(("spring", "drag", "cogging")),
         pair(("cogging",), ratio=0.2),  # too small to be asked for
     ]
     both, recall = _figure(results, "both and no other"), _figure(results, "recall")
     assert (both.items, both.measured) == (4, 0.5)
     assert (recall.items, recall.measured) == (4, pytest.approx(7 / 8))
+    sure = _figure(results, "for each of them")
+    assert (sure.items, sure.measured) == (3, pytest.approx(2 / 3))
     heavy = replace(
         pair(("weight_friction", "drag", "weight_stribeck")),
         truths=("weight_growth", "drag"),

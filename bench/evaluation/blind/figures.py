@@ -75,6 +75,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
         _smallest_found(singles),
         *_held_out(right),
         _share("two effects of r >= 0.3, both and no other", 0.85, pairs, _is_exact),
+        _share("the same, where d' >= 6 for each of them", 0.85, [one for one in pairs if _both_sure(one)], _is_exact),
         _mean("two effects of r >= 0.3, recall", "at least 95 %", [_recall(one) for one in pairs], 0.95),
         *_outside(answered),
         *_withheld(singles),
@@ -261,6 +262,10 @@ def _is_settled(one: Result) -> bool:
 
 def _both_clear(one: Result) -> bool:
     return all(standing is not None and standing.ratio >= CLEAR for standing in one.standings)
+
+
+def _both_sure(one: Result) -> bool:
+    return all(standing is not None and standing.detectability >= MUST_NAME for standing in one.standings)
 
 
 def _recall(one: Result) -> float:
