@@ -11,6 +11,7 @@ from math import nan
 from compensator.lab import progress
 from compensator.lab.at_rest.rest_comparison import RestComparison, at_rest_in_words, compare_at_rest
 from compensator.lab.chance import SIGNIFICANT
+from compensator.lab.diagnosis.absorbed import absorbed
 from compensator.lab.diagnosis.alien_effort import alien_effort
 from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.confirmation import nearest_one
@@ -69,6 +70,7 @@ def diagnose(fit: Fit) -> Diagnosis:
     # what sliding leaves no room for, rest may: static friction beyond the model's is something that is missing
     sticks = first.verdict == "nothing" and rest is not None and rest.is_friction
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
+    hiding = absorbed(fit, families.left_out)
     notes = [*first.notes, *left, *(_also_missing(answer) for answer in others if answer.verdict == "missing")]
     notes += [note for answer in others if answer is families.rest for note in answer.notes]
     return Diagnosis(
@@ -76,13 +78,19 @@ def diagnose(fit: Fit) -> Diagnosis:
         sentence=(f"{at_rest[0].text} In motion: " if sticks else "")
         + first.sentence
         + _hidden_rivals(first, fit, families.left_out)
-        + ("" if too_short else _nearest(first, ranked)),
+        + ("" if too_short else _nearest(first, ranked))
+        + "".join(f" {note.text}" for note in hiding if first.verdict == "nothing"),
         p_value=first.p_value,
         classes=_classes(ranked),
         candidates=ranked,
         driver=first.driver,
         data_problems=[*([] if alien is None or explained else [alien.text]), *lesser_problems(fit)],
-        notes=[*notes, *([] if sticks else at_rest), *_by_run(first.explained or fit)],
+        notes=[
+            *notes,
+            *([] if sticks else at_rest),
+            *([] if first.verdict == "nothing" else hiding),
+            *_by_run(first.explained or fit),
+        ],
         left_out=families.left_out,
         too_short=too_short,
         remains=first.remains or bool(left) or sticks,

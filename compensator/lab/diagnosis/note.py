@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 NoteCode = Literal[
+    "absorbed",
     "also-missing",
     "at-rest",
     "differs-by-run",
@@ -16,6 +17,7 @@ NoteCode = Literal[
     "wanders",
 ]
 """
+absorbed: a term that the model has may be an effect that hides in it.
 also-missing: another family of effects has something missing, too.
 at-rest: the joint at rest contradicts the model.
 differs-by-run: a constant differs from run to run.

@@ -1,0 +1,39 @@
+"""What a model's own offset may be: friction that differs by direction hides in it, and is missing in no residual."""
+
+from collections.abc import Collection
+
+from compensator.lab.diagnosis.note import Note, Value
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.fitted import Fit
+from compensator.lab.model.intervals import estimates
+
+OFFSET = "offset"
+LEAST_SHARE = 0.05  # of dry friction: a current sensor's zero, or a mount that is not level, makes less
+
+
+def absorbed(fit: Fit, left_out: Collection[str]) -> list[Note]:
+    """A note for each effect that the offset hides, where the offset is surely not zero, and not small.
+
+    Args:
+        fit: of the model.
+        left_out: effects that cannot be judged.
+    """
+    offset = next((one for one in estimates(fit) if one.effect == OFFSET), None)
+    friction = fit.dry_friction
+    if offset is None or friction <= 0.0 or not (offset.low > 0.0 or offset.high < 0.0):
+        return []
+    share = abs(offset.value) / friction
+    if share < LEAST_SHARE:
+        return []
+    hidden = [one for one in map(effect_named, left_out) if OFFSET in one.hidden_by]
+    return [_note(one.name, one.title, one.excited_by, offset.value, offset.unit, share) for one in hidden]
+
+
+def _note(name: str, title: str, excited_by: str, value: float, unit: str, share: float) -> Note:
+    values: dict[str, Value] = {"effect": name, "offset": value, "unit": unit, "share": share}
+    effect = f"{title[0].lower()}{title[1:]}"
+    text = (
+        f"The model's offset, {value:.3g} {unit}, is {share:.0%} of dry friction: it may as well be {effect}, which these "
+        f"trials cannot tell from it; {excited_by} would."
+    )
+    return Note("absorbed", text, values)
