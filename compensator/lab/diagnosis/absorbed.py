@@ -33,7 +33,7 @@ def _note(name: str, title: str, excited_by: str, value: float, unit: str, share
     values: dict[str, Value] = {"effect": name, "offset": value, "unit": unit, "share": share}
     effect = f"{title[0].lower()}{title[1:]}"
     text = (
-        f"The model's offset, {value:.3g} {unit}, is {share:.0%} of dry friction: it may as well be {effect}, which these "
-        f"trials cannot tell from it; {excited_by} would."
+        f"The model's offset, {value:.3g} {unit}, is {share:.0%} of dry friction: it may as well be {effect}, which "
+        f"these trials cannot tell from it; {excited_by} would."
     )
     return Note("absorbed", text, values)

@@ -1,12 +1,16 @@
-"""Whether a candidate is confirmed by its evidence and its gain on held-out rows, and whether it is worth adding."""
+"""Whether an effect, or a curve, is confirmed by its evidence and its gain on held-out rows, and is worth adding."""
 
 import math
 from collections.abc import Sequence
 
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis
-from compensator.lab.model.held_out_error import LEAST_OF_EFFORT
-from compensator.lab.screening.evidence import VERY_STRONG
+from compensator.lab.model.fit import with_columns
+from compensator.lab.model.gain import held_out_gain
+from compensator.lab.model.held_out_error import LEAST_OF_EFFORT, HeldOut
+from compensator.lab.model.validation import held_out
+from compensator.lab.screening.candidates import Candidates
+from compensator.lab.screening.evidence import VERY_STRONG, Evidence, Screening, among_all
 
 SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
 SLIGHT_PART = 0.05  # of what effects that were added explain, root mean square: a formula is rarely right to more
@@ -45,6 +49,24 @@ def nearest_one(candidates: Sequence[Candidate]) -> Candidate | None:
     """Of effects that are no luck and not sure to help, that with the most evidence; None without."""
     near = [one for one in candidates if one.score > VERY_STRONG and doubts(one) == [UNSURE_GAIN]]
     return max(near, key=lambda one: one.score, default=None)
+
+
+def helpful_curve(gathered: Candidates, generic: Screening) -> tuple[Evidence, HeldOut] | None:
+    """The free curve with the best evidence, and the held-out error with it; None where it is luck, or hardly helps.
+
+    It has more coefficients than a formula, and every chain bends a little of what it measures.
+
+    Args:
+        gathered: the model, and what it may be missing.
+        generic: evidence for free curves.
+    """
+    curve = next((one for one in generic.evidence[:1] if one.score > 0.0), None)
+    if curve is None or among_all(generic.chance(curve.p_value)) > SIGNIFICANT:
+        return None
+    fit, name = gathered.fit, curve.block.name
+    errors = held_out(with_columns(fit, name, gathered.curves.columns[name]))
+    gain = held_out_gain(held_out(fit), errors)
+    return (curve, errors) if gain.low > 0.0 and gain.value >= LEAST_GAIN_OF_CHAIN else None
 
 
 def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:

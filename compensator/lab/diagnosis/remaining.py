@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from compensator.lab.diagnosis.confirmation import helpful_curve
 from compensator.lab.diagnosis.note import Note, Value
-from compensator.lab.diagnosis.unfollowed import helpful_curve
 from compensator.lab.effects.free_curve import AGAINST_MOTION, FORCE, TIMES_SPEED, way_of
 from compensator.lab.left_over.left_over import LeftOver, left_over, unexplained_in_words
 from compensator.lab.left_over.orders import recurring_in_words

@@ -4,41 +4,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.chance import SIGNIFICANT
-from compensator.lab.diagnosis.confirmation import LEAST_GAIN_OF_CHAIN
+from compensator.lab.diagnosis.confirmation import helpful_curve
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis, Picture
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.effects.effect import Effect
 from compensator.lab.effects.free_curve import FORCE, name_of, way_of
 from compensator.lab.errors import NotApplicableError, UnusableDataError
-from compensator.lab.model.fit import fit_effects, widened, with_columns
+from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, held_out_gain, predicts_better
-from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.rows.picture import binned_mean
 from compensator.lab.screening.base import HYSTERESIS_DRIVER
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Evidence, Screening, among_all
-
-
-def helpful_curve(gathered: Candidates, generic: Screening) -> tuple[Evidence, HeldOut] | None:
-    """The free curve with the best evidence, and the held-out error with it; None where it is luck, or hardly helps.
-
-    It has more coefficients than a formula, and every chain bends a little of what it measures.
-
-    Args:
-        gathered: the model, and what it may be missing.
-        generic: evidence for free curves.
-    """
-    curve = next((one for one in generic.evidence[:1] if one.score > 0.0), None)
-    if curve is None or among_all(generic.chance(curve.p_value)) > SIGNIFICANT:
-        return None
-    fit, name = gathered.fit, curve.block.name
-    errors = held_out(with_columns(fit, name, gathered.curves.columns[name]))
-    gain = held_out_gain(held_out(fit), errors)
-    return (curve, errors) if gain.low > 0.0 and gain.value >= LEAST_GAIN_OF_CHAIN else None
+from compensator.lab.screening.evidence import Evidence, Screening
 
 
 def unfollowed(gathered: Candidates, generic: Screening, examined: list[Candidate]) -> Evidence | None:

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import unfollowed
+from compensator.lab.diagnosis import confirmation, unfollowed
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.diagnosis.four_families import judged
@@ -81,7 +81,7 @@ def test_what_bends_beside_a_name_is_told_once_the_name_is_in_the_model(extra, t
 def test_what_is_small_bends_where_no_luck_brings_it_and_it_helps_for_sure(monkeypatch):
     fit = fit_of(lambda x: WEAK * hose(x))
     assert bends(fit)
-    monkeypatch.setattr(unfollowed, "SIGNIFICANT", 1e-4)
+    monkeypatch.setattr(confirmation, "SIGNIFICANT", 1e-4)
     assert not bends(fit)
 
 

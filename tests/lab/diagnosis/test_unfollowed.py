@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import unfollowed
+from compensator.lab.diagnosis import confirmation
 from compensator.lab.diagnosis.confirmation import LEAST_GAIN_OF_CHAIN
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.search import search
@@ -58,5 +58,5 @@ def test_friction_of_the_load_of_another_form_is_unknown(friction):
 @pytest.mark.parametrize(("gain", "low", "unknown"), [(0.9, 0.01, False), (1.1, 0.01, True), (1.1, -0.01, False)])
 def test_a_curve_is_of_use_on_other_trials_for_sure_or_no_unknown_effect(monkeypatch, gain, low, unknown):
     fit = fit_to(lambda x: 0.05 * np.exp(-(((x.q - 0.4) / 0.08) ** 2)) * np.sign(x.v))
-    monkeypatch.setattr(unfollowed, "held_out_gain", lambda *_: Gain(gain * LEAST_GAIN_OF_CHAIN, low, 0.1))
+    monkeypatch.setattr(confirmation, "held_out_gain", lambda *_: Gain(gain * LEAST_GAIN_OF_CHAIN, low, 0.1))
     assert (diagnose(fit).verdict == "unknown-effect") == unknown
