@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,11 +12,13 @@ from bench.store.errors import NotFoundError
 from bench.study.changes import _sentence, add_effect, drop_effect
 from bench.study.compare import compare
 from bench.study.create import create_study, describe
-from bench.study.diagnosis.diagnose import _ranking, diagnose
+from bench.study.diagnosis.diagnose import _ranking, answer_of, diagnose
+from bench.study.diagnosis.judged import diagnosis_of_model
 from bench.study.diagnosis.search import search
 from bench.study.effects import effects_catalogue
 from bench.study.errors import StudyError
 from bench.study.ladder import ladder
+from bench.study.material import load_model
 from bench.study.models.base import StudyModel
 from bench.study.models.study import Study
 from compensator.lab.diagnosis import diagnosis as lab
@@ -321,3 +324,20 @@ def test_a_gain_unlike_the_errors_beside_it_says_why(after, told):
 )
 def test_what_is_said_after_an_effect_was_dropped_is_about_dropping_it(gain, told):
     assert _sentence("Dropping", "elasticity", "held-out error", 0.0468, 0.0785, gain).endswith(told)
+
+
+@pytest.mark.parametrize(
+    ("left_out", "sentence"),
+    [
+        ({"back_driving_friction": "why"}, "Load-dependent friction stands alone among what these trials can judge."),
+        ({"backlash": "why"}, "Load-dependent friction stands alone."),
+    ],
+)
+def test_beside_a_hidden_rival_a_name_stands_alone_among_what_can_be_judged(store, study, left_out, sentence):
+    material, model = load_model(store, study.study_id, study.model_id)
+    fit = material.fit_of(model)
+    assert "gravity" in fit.names
+    found = diagnosis_of_model(material, model, fit)
+    first = replace(found.candidates[0], effect=effect_named("load_friction"))
+    told = replace(found, classes=[("load_friction",)], candidates=[first], left_out=left_out)
+    assert [one.sentence for one in answer_of(fit, told, 1, model.id).classes] == [sentence]
