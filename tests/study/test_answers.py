@@ -320,10 +320,26 @@ def test_a_gain_unlike_the_errors_beside_it_says_why(after, told):
         (Gain(-0.676, -0.8, -0.5), "Dropping it harms: add it again."),
         (Gain(0.0, -0.1, 0.1), "dropping it does no harm that these trials show."),
         (Gain(0.2, 0.1, 0.3), "Dropping it helps: the model is better without it."),
+        (Gain(0.001, 0.0004, 0.0014), "that matters, being under 0.5%: the model is as good without it."),
+        (Gain(-0.0049, -0.02, -0.001), "that matters, being under 0.5%: the model is as good without it."),
     ],
 )
 def test_what_is_said_after_an_effect_was_dropped_is_about_dropping_it(gain, told):
     assert _sentence("Dropping", "elasticity", "held-out error", 0.0468, 0.0785, gain).endswith(told)
+
+
+@pytest.mark.parametrize(
+    ("gain", "told"),
+    [
+        (Gain(-0.0002, -0.0004, -0.0001), "That is no difference that is worth it, being under 0.5%: leave it out."),
+        (Gain(0.001, 0.0005, 0.006), "That is no difference that is worth it, being under 0.5%: leave it out."),
+        (Gain(0.0, -0.001, 0.001), "That is no difference that is worth it, being under 0.5%: leave it out."),
+        (Gain(0.001, -0.1, 0.1), "these trials do not show that it is needed."),
+        (Gain(0.006, 0.005, 0.007), "It helps: keep it."),
+    ],
+)
+def test_a_gain_of_next_to_nothing_is_called_so_however_sure(gain, told):
+    assert _sentence("Adding", "elasticity", "held-out error", 0.0031, 0.0031, gain).endswith(told)
 
 
 @pytest.mark.parametrize(
