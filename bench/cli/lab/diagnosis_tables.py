@@ -16,7 +16,8 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
 
 def diagnosis(found: "Diagnosis") -> None:
     """The verdict and the ranking."""
-    from bench.study.models.diagnosis import ORDER  # imported when needed: `--help` starts at once
+    from bench.study.diagnosis.findings import numbers_explained  # imported when needed: `--help` starts at once
+    from bench.study.models.diagnosis import ORDER
 
     say(found.sentence)
     if found.slight:
@@ -45,6 +46,8 @@ def diagnosis(found: "Diagnosis") -> None:
     if rows:
         columns = ["effect", "named", "score#", "p#", "held out before#", "after#", "gain#", "d'#", "why not"]
         table(f"Effects by evidence: {ORDER}", columns, rows)
+        if explained := numbers_explained(found.ranking):
+            say(explained)
     if found.provisional:
         say(found.provisional.sentence)
     for note in found.notes:

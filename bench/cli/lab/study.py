@@ -139,7 +139,11 @@ def simulate_command(
 
 @app.command("diagnose")
 def diagnose_command(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
-    """Which physical effect is missing, how sure is that, and what would adding it bring."""
+    """Which physical effect is missing, how sure is that, and what would adding it bring.
+
+    Gains count each row by how well it is known, errors count all alike; effects near reversals and at starts from
+    rest have errors of their own rows.
+    """
     from bench.study.diagnosis.diagnose import diagnose
 
     session = session_of(context)
