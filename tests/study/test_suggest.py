@@ -147,6 +147,15 @@ def test_a_suggestion_says_what_of_its_prediction_is_promised(promised, told):
     assert told in SUGGEST._sentence(Suggestion(pairs, (), (pick,), 0.01), SimpleNamespace(verdict="missing"))
 
 
+def test_a_pair_that_no_trial_tells_apart_is_listed_once():
+    pairs = (
+        Pair("spring", "cogging", 0.1, 0.1, 0.2, 0.1, 0.0), Pair("cogging", "spring", 0.1, 0.1, 0.2, 0.1, 0.0),
+        Pair("cogging", None, 0.1, 0.1, 0.2, 0.1, 0.0),
+    )  # fmt: skip
+    told = SUGGEST._sentence(Suggestion((), pairs, (), 0.01), SimpleNamespace(verdict="missing"))
+    assert told.endswith("Spring or cable torque and Cogging; Cogging and no missing effect.")
+
+
 @pytest.mark.parametrize(("verdict", "supposes"), [("nothing", True), ("missing", False)])
 def test_where_nothing_is_sure_a_suggestion_says_what_it_supposes(verdict, supposes):
     pairs = (Pair("spring", None, 1.0, 7.0, 9.0, 4.0, 6.0), Pair("cogging", "spring", 1.5, 8.0, 9.0, 4.0, 0.0))

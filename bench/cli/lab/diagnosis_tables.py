@@ -97,8 +97,23 @@ def suggestion(found: "Suggested") -> None:
     for one in found.kept_out:
         say(f"kept out: {one.kind}, experiment {one.experiment_id}, {one.outcome}: {one.reason}")
     pairs = [(one.true, one.rival or "nothing", one.before, one.after, one.promised) for one in found.pairs]
-    columns = ["truth", "rival", "now#", "then#", "nine in ten#"]
-    table("If the truth is one, predicted d' against the other", columns, pairs)
+    if pairs:
+        columns = ["truth", "rival", "now#", "then#", "nine in ten#"]
+        table("If the truth is one, predicted d' against the other", columns, pairs)
+
+
+def not_settled(found: "Diagnosis", trials: int) -> str:
+    """The last words after so many suggested trials, where they have not brought one name; else empty."""
+    came = f"It is not settled: {trials} suggested trial{'s' * (trials != 1)} came, and"
+    if found.conclusion.code == "likely":
+        return f"{came} what is likely is not sure."
+    if not found.classes or len(found.classes[0].effects) == 1:
+        return ""
+    names = " and ".join(found.classes[0].effects)
+    return (
+        f"{came} {names} are not told apart: take them as one class, or see what else would tell: friction-bench study "
+        f"coverage {found.study_id}"
+    )
 
 
 def _values(parameters: "Json") -> str:

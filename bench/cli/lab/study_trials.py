@@ -49,6 +49,8 @@ def carry_out_all(
         print_json(running.told())
     elif (last := running.rounds[-1].diagnosis) is not None:
         tables.diagnosis(last)
+        if open_still := tables.not_settled(last, sum(not one.reason for one in tried)):
+            say(session.in_full(open_still))
         say(session.in_full(tables.next_step(last, model_id)))
     if running.signal_code is not None:
         raise typer.Exit(running.signal_code)

@@ -156,5 +156,7 @@ def _condition(found: Suggestion, diagnosis: Diagnosis) -> str:
 
 
 def _hopeless(found: Suggestion) -> str:
-    names = dict.fromkeys(_names(pair.true, pair.rival) for pair in found.hopeless)
-    return f"Not told apart by any trial of this bench: {'; '.join(names)}." if names else ""
+    pairs: dict[frozenset[str | None], str] = {}  # once, whichever of the two is taken for the truth
+    for pair in found.hopeless:
+        pairs.setdefault(frozenset((pair.true, pair.rival)), _names(pair.true, pair.rival))
+    return f"Not told apart by any trial of this bench: {'; '.join(pairs.values())}." if pairs else ""
