@@ -169,6 +169,11 @@ def test_each_step_of_a_study_names_the_next(command, tmp_path):
     assert command("study", "diagnose", 1).stdout.splitlines()[-1] == keep
     searched = command("study", "search", 1, "--model", 1).stdout.splitlines()
     assert searched[-1] == keep
+    count = sum(
+        one["code"] == "not-judged" for one in json.loads(command("study", "diagnose", 1, "--json").stdout)["findings"]
+    )
+    assert count > 0
+    assert f"{count} effects could not be judged on these trials; why: friction-bench study diagnose 1" in searched
 
 
 def test_a_search_that_ends_at_a_curve_offers_it_as_its_diagnosis_does(command, tmp_path, monkeypatch):

@@ -78,6 +78,19 @@ def search(found: "Searched") -> None:
     say(found.sentence)
 
 
+def not_judged(last: "Diagnosis", model_id: int | None) -> str:
+    """How many effects the trials could not judge, and the command that says why; empty where they judged all.
+
+    Args:
+        last: the diagnosis that a search ended with.
+        model_id: the model that was asked for; None: the newest.
+    """
+    count = sum(finding.code == "not-judged" for finding in last.findings)
+    beside = "" if model_id is None else f" --model {model_id}"
+    what = f"{count} effect{'s' * (count != 1)} could not be judged on these trials"
+    return f"{what}; why: friction-bench study diagnose {last.study_id}{beside}" if count else ""
+
+
 def suggestion(found: "Suggested") -> None:
     """Trials to record next, and why."""
     say(found.diagnosis)
