@@ -165,6 +165,26 @@ def test_where_nothing_is_sure_a_suggestion_says_what_it_supposes(verdict, suppo
     assert ("That holds if one of Spring or cable torque and Cogging is missing" in told) == supposes
 
 
+@pytest.mark.parametrize(("now", "told"), [(2.4, True), (5.9, False)])
+def test_a_d_prime_that_fell_with_the_trials_that_were_added_is_told(store, monkeypatch, now, told):
+    study = create_study(store, "falls", [run(store, "excitation", MOTIONS)]).study_id
+    seen = []
+
+    def d_prime_of(fit, _diagnosis, _name):
+        seen.append(len(fit.dataset.trials))
+        return 5.7 if len(seen) == 1 else now
+
+    monkeypatch.setattr("bench.study.suggestion.since.d_prime_of", d_prime_of)
+    suggest(store, study, CONFIGURATION, trials=1)
+    assert seen == []  # there is nothing before
+    extended = extend_study(store, study, [run(store, "excitation", {**MOTIONS, "speed_rad_s": 1.5})])
+    sentence = suggest(store, study, CONFIGURATION, trials=1).sentence
+    assert seen == [extended.trials - len(extended.added), extended.trials]
+    assert (" fell from 5.7 to 2.4. The rivals are closer than the model said." in sentence) == told
+    assert "The rivals are closer" not in suggest(store, study, CONFIGURATION, trials=1, since_before=False).sentence
+    assert len(seen) == 2
+
+
 def test_suggestions_start_from_the_diagnosis_that_was_made(store, made, found, monkeypatch):
     monkeypatch.setattr(judged, "diagnose", None)  # nothing is judged again
     again = suggest(store, made.study_id, CONFIGURATION, made.model_id, trials=2)

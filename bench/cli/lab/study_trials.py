@@ -30,11 +30,13 @@ REPLACED = ("tripped", "failed", "refused")  # outcomes after which the next bes
 
 
 def suggested(
-    session: BenchSession, study_id: int, model_id: int | None, trials: int, refused: Collection[str] = ()
+    session: BenchSession, study_id: int, model_id: int | None, trials: int, refused: Collection[str] | None = None
 ) -> Suggested:
-    """What to record next."""
+    """What to record next; within rounds, which tell themselves what came, without the trials that are refused."""
     with session.open_store() as store:
-        return suggest.suggest(store, study_id, session.configuration(), model_id, trials, refused)
+        return suggest.suggest(
+            store, study_id, session.configuration(), model_id, trials, refused or (), refused is None
+        )
 
 
 def carry_out_all(

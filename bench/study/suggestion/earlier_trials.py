@@ -11,6 +11,12 @@ from bench.study.suggestion.options import Choice
 from bench.study.suggestion.suggested import Came, Suggested
 from compensator.lab.effects.catalogue import effect_named
 
+SHORT = 0.9  # of a d' that was predicted: less that came is told
+CLOSER = (
+    "The rivals are closer than the model said. Further trials are chosen by what came; if they bring less than was "
+    "predicted again, take the rivals as one class, or let the bench move farther, faster, or under other loads."
+)
+
 
 def what_came(suggested: Suggested, next_suggested: Suggested) -> list[Came]:
     """Of each rival of a suggestion, the smallest d' that was predicted, and that the next suggestion begins with.
@@ -34,11 +40,7 @@ def in_words(came: Sequence[Came]) -> str:
     parts = [f"{effect_named(one.effect).title}: {one.predicted:.1f} was predicted, {_came(one)}" for one in came]
     told = f"Smallest d' with these trials. {'; '.join(parts)}."
     if any(one.came is not None and (_fell(one) or one.came < SHORT * one.predicted) for one in came):
-        told += (
-            " The rivals are closer than the model said. Further trials are chosen by what came; if they bring less "
-            "than was predicted again, take the rivals as one class, or let the bench move farther, faster, or under "
-            "other loads."
-        )
+        told += f" {CLOSER}"
     return told
 
 
@@ -59,7 +61,6 @@ def _smallest(values: Sequence[tuple[str, float]]) -> dict[str, float]:
     return found
 
 
-SHORT = 0.9  # of a d' that was predicted: less that came is told
 NOT_POSSIBLE = ("tripped", "failed")  # stopped by somebody, or with the process, it may be possible all the same
 
 
