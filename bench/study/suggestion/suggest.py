@@ -94,7 +94,7 @@ def suggest(
 
 
 def _fallen(store: Store, study_id: int, model: ModelRow, now: Judged) -> str:
-    """As `fallen`; empty where the model did not come of an extension: its parent has other effects, or there is none."""
+    """As `fallen`; empty where the model did not come of an extension: its parent has other effects, or is none."""
     number = model.parent_id
     if number is None or store.model(number).effects != model.effects:
         return ""
