@@ -1,6 +1,7 @@
 """The bench configuration (`bench.toml`): rig, drive, limits, servo, search, store."""
 
 import tomllib
+from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -122,9 +123,20 @@ def preset_configuration(name: str) -> BenchConfiguration:
 
 def parse_configuration(values: dict[str, Any], source: str) -> BenchConfiguration:
     """A configuration from nested tables; `source` is named in errors."""
+    if _is_rig(values):
+        raise ConfigurationError(
+            f"{source}: is a rig file, which describes one joint; wanted is the file of a bench, such as bench.toml, "
+            "which names its rig: rig = 'rig.toml'. Recordings are imported with a rig file by --rig"
+        )
     try:
         return BenchConfiguration.model_validate(values)
     except ValidationError as error:
         raise ConfigurationError(
             "\n".join(f"{source}: {problem}" for problem in problems(error, model=BenchConfiguration))
         ) from error
+
+
+def _is_rig(values: Mapping[str, object]) -> bool:
+    """Whether the tables are those of a rig, and none is of a bench; `name` is a key of both."""
+    of_rig, of_bench = set(Rig.model_fields), set(BenchConfiguration.model_fields)
+    return bool((of_rig - of_bench) & set(values)) and not (of_bench - of_rig) & set(values)

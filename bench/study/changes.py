@@ -12,6 +12,7 @@ from bench.study.models.comparison import FittedParameter
 from bench.study.models.stages import CHANGE, FITTING, JUDGING
 from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates, compare_breakaway, held_out_both
+from compensator.lab.diagnosis.confirmation import LEAST_GAIN
 from compensator.lab.diagnosis.physical import TOLD, why_impossible
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit
@@ -25,14 +26,16 @@ _ADVICE = {
         "It helps: keep it.",
         "It harms: drop it.",
         "The interval includes no change: these trials do not show that it is needed.",
+        f"That is no difference that is worth it, being under {LEAST_GAIN:.1%}: leave it out.",
     ),
     "Dropping": (
         "Dropping it helps: the model is better without it.",
         "Dropping it harms: add it again.",
         "The interval includes no change: dropping it does no harm that these trials show.",
+        f"That is no difference that matters, being under {LEAST_GAIN:.1%}: the model is as good without it.",
     ),
 }
-"""What was done -> what to do then, where the error falls for sure, rises for sure, or neither."""
+"""What was done -> what to do then, where the error falls for sure, rises for sure, neither, or for sure by nothing."""
 
 
 @progress.stages(CHANGE)
@@ -128,8 +131,11 @@ def _changed(before: HeldOut, after: HeldOut, parameters: list[FittedParameter])
 
 
 def _sentence(done: str, effect: str, error: str, before: float, after: float, gain: Gain, impossible: str = "") -> str:
-    helps, harms, neither = _ADVICE[done]
+    helps, harms, neither, slight = _ADVICE[done]
     advice = helps if gain.low > 0.0 else harms if gain.high < 0.0 else neither
+    small = max(map(abs, (gain.low, gain.high))) < LEAST_GAIN
+    if small or (advice != neither and abs(gain.value) < LEAST_GAIN):
+        advice = slight
     if impossible == TOLD:
         advice = f"It is {TOLD}, and no find; {advice[0].lower()}{advice[1:]}"
     elif impossible:

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from sim_backend.challenge.ranges import COUNTS, DUTY_COUNTS, JOINT, VOLTAGES
+from sim_backend.challenge.ranges import COUNTS, DUTY_COUNTS, HOUSING_RISE, JOINT, SESSION_S, VOLTAGES
 from sim_backend.mechanisms.joint.gravity import STANDARD_GRAVITY_M_S2
 
 Tables = dict[str, dict[str, Any]]
 ACCELERATION_RAD_S2 = 20.0  # of the quickest motion that a motor is chosen for
-SESSION_S = 250.0  # of motion, over which it warms
+HEAT_SHARE = 0.2  # of the peak's, over a session: the square of `CURRENT_SHARE`
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def draw_joint(random: np.random.Generator) -> Joint:
         "friction": friction,
         "arm_friction": arm_friction,
         "load_friction": {"driving": 0.0, "back_driving": 0.0},
-        "heat": _heat(drawn, 0.2 * peak_a**2 * motor["resistance_ohm"]),
+        "heat": _heat(drawn, HEAT_SHARE * peak_a**2 * motor["resistance_ohm"]),
         "scatter": {
             "static_fraction": drawn["static scatter"],
             "coulomb_fraction": drawn["Coulomb scatter"],
@@ -154,7 +154,7 @@ def _gear(drawn: _Drawn, ratio: float, rotor_kg_m2: float, arm_kg_m2: float) -> 
 
 def _heat(drawn: _Drawn, loss_w: float) -> dict[str, float]:
     """Return thermal masses that such a loss warms as far as was drawn, the winding well before the housing."""
-    room_c, warming_k = drawn["room"], drawn["warming over the protocol"]
+    room_c, warming_k = drawn["room"], drawn[HOUSING_RISE]
     housing_j_k = loss_w * SESSION_S / warming_k
     return {
         "present": True,

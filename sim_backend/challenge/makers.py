@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sim_backend.challenge.joint import SESSION_S, Joint, Tables
+from sim_backend.challenge.joint import Joint, Tables
+from sim_backend.challenge.ranges import SESSION_S
 from sim_backend.mechanisms.joint.gravity import STANDARD_GRAVITY_M_S2
 
 Make = Callable[[float, Joint, np.random.Generator], Tables]

@@ -38,6 +38,10 @@ VOLTAGES = (12.0, 24.0, 36.0, 48.0)  # what supplies are sold for
 COUNTS = (2048.0, 4096.0, 8192.0, 16384.0)  # incremental encoders and resolver converters, per motor turn
 DUTY_COUNTS = (1000.0, 2048.0, 4096.0)  # timers of 20 kHz stages
 
+SESSION_S = 250.0  # of motion, over which a joint warms
+CURRENT_SHARE = 0.45  # of the peak current, root mean square in that time: a fifth of the peak's heat
+HOUSING_RISE = f"rise of the housing in {SESSION_S:g} s at {CURRENT_SHARE:.0%} of the peak current"
+
 JOINT: dict[str, Range] = {
     "arm length": Range(0.2, 0.5, "m", "bench-top joints; the paper's needs 0.5 m", "log"),
     "arm mass": Range(0.1, 0.4, "kg", "aluminium profile of that length"),
@@ -58,7 +62,9 @@ JOINT: dict[str, Range] = {
     "arm-side over drive-side friction": Range(0.02, 0.08, "1", "ball bearings behind the gear"),
     "back-EMF over supply at top speed": Range(0.15, 0.4, "1", "leaves voltage for current"),
     "ohmic drop over supply at peak torque": Range(0.2, 0.4, "1", "leaves voltage for speed"),
-    "warming over the protocol": Range(3.0, 15.0, "K", "a few minutes of duty; Rhoban/bam logs: 28 to 40 degC"),
+    HOUSING_RISE: Range(
+        3.0, 15.0, "K", "if all heat stayed there; recordings load it less and show less; Rhoban/bam: 28 to 40 degC"
+    ),
     "room": Range(15.0, 30.0, "degC", "laboratories"),
     "static scatter": Range(0.0, 0.02, "1", "stop to stop; the paper's 25 steps allow 0.02"),
     "Coulomb scatter": Range(0.0, 0.02, "1", "along the path; EMPS repeats within 0.05"),

@@ -81,6 +81,7 @@ def test_ranges_are_shown_with_their_reasons(command):
     shown = command("challenge", "--ranges").stdout
     assert "the paper: 60 of 490 mA" in shown
     assert "lubricant: Vogel temperature" in shown
+    assert "rise of the housing in" in " ".join(shown.split())
 
 
 def test_the_difficulties_say_how_many_mechanisms_they_hide(command):
@@ -98,3 +99,27 @@ def test_a_place_that_is_taken_is_refused_before_anything_is_loaded(tmp_path):
     told = subprocess.run([sys.executable, "-c", watched], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert "is there already" in told.stderr
     assert told.stdout.strip() == "False"
+
+
+@pytest.mark.parametrize(
+    ("guess", "told"),
+    [
+        ("nothing", "Not right: 0 of 2 hidden mechanisms found, no names wrong."),
+        ("spring", "Not right: 1 of 2 hidden mechanisms found, no names wrong."),
+        ("spring,cogging", "Not right: 1 of 2 hidden mechanisms found, 1 name wrong."),
+    ],
+)
+def test_a_guess_that_is_not_right_gets_a_verdict_too(command, tmp_path, guess, told):
+    (tmp_path / "set").mkdir()
+    truths = tuple(Truth(name, name, 1.0, "size", "1", 0.2, {}, 0.2) for name in ("spring", "shaft"))
+    write_sealed(Answer(1, "hard", 0, truths, {}), tmp_path / "set", tmp_path / "set.answer")
+    shown = command("reveal", "set.answer", "--guess", guess).stdout.strip().splitlines()
+    assert shown[-1] == told
+
+
+def test_where_nothing_is_hidden_a_name_is_wrong(command, tmp_path):
+    (tmp_path / "set").mkdir()
+    write_sealed(Answer(1, "hard", 0, (), {}), tmp_path / "set", tmp_path / "set.answer")
+    shown = command("reveal", "set.answer", "--guess", "spring,cogging").stdout.strip().splitlines()
+    assert shown[-1] == "Not right: nothing was hidden that could be found, 2 names wrong."
+    assert command("reveal", "set.answer", "--guess", "nothing").stdout.strip().endswith("All of it, and nothing else.")

@@ -169,6 +169,11 @@ def test_each_step_of_a_study_names_the_next(command, tmp_path):
     assert command("study", "diagnose", 1).stdout.splitlines()[-1] == keep
     searched = command("study", "search", 1, "--model", 1).stdout.splitlines()
     assert searched[-1] == keep
+    count = sum(
+        one["code"] == "not-judged" for one in json.loads(command("study", "diagnose", 1, "--json").stdout)["findings"]
+    )
+    assert count > 0
+    assert f"{count} effects could not be judged on these trials; why: friction-bench study diagnose 1" in searched
 
 
 def test_a_search_that_ends_at_a_curve_offers_it_as_its_diagnosis_does(command, tmp_path, monkeypatch):
@@ -205,7 +210,7 @@ def test_where_no_effect_is_offered_the_next_step_is_a_command(verdict, code, sl
     assert next_step(found, None) == f"next: friction-bench {command}"
 
 
-def test_every_reason_against_an_effect_is_in_its_row(monkeypatch):
+def test_every_reason_against_an_effect_is_in_its_row_and_odd_gains_are_explained_below(monkeypatch, capsys):
     told = {"why_not": ["may be luck", "gain not sure"], "effect": "spring", "in_class": False}
     numbers = dict.fromkeys(
         ("score", "p_value", "held_out_before", "held_out_after", "gain", "gain_low", "gain_high", "d_prime"), 0.5
@@ -221,3 +226,4 @@ def test_every_reason_against_an_effect_is_in_its_row(monkeypatch):
     row = dict(zip(columns, rows[0], strict=True))
     assert row["why not"] == "may be luck, gain not sure"
     assert row["p#"] == "0.5"
+    assert "gains count each row by how well it is known" in capsys.readouterr().out

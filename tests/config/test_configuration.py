@@ -31,6 +31,16 @@ def test_a_rig_may_stand_in_its_own_file(tmp_path):
     assert read_configuration(tmp_path / "bench.toml").rig.gear.ratio == 30
 
 
+@pytest.mark.parametrize("rig", sorted(EXAMPLES.glob("*/rig.toml")), ids=lambda path: path.parent.name)
+def test_a_rig_file_in_place_of_a_bench_is_called_so(rig, tmp_path):
+    with pytest.raises(ConfigurationError, match=r"is a rig file.*wanted is the file of a bench") as caught:
+        read_configuration(rig)
+    assert len(str(caught.value).splitlines()) == 1
+    (tmp_path / "bench.toml").write_text("[limits]\nspeed_rad_s = 1.0\n[gear]\nratio = 30\n")
+    with pytest.raises(ConfigurationError, match="gear: unknown key"):
+        read_configuration(tmp_path / "bench.toml")
+
+
 WRONG = [
     ("[limits]\nspeed_rad_s = -1", "limits.speed_rad_s: found -1; should be greater than 0 rad/s"),
     ("[limits]\nspeed_rad_s = 'fast'", "limits.speed_rad_s: found 'fast'; should be a valid number"),

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from sim_backend.challenge.draw import DrawnPlant, Wanted, draw_plant, hide
-from sim_backend.challenge.joint import draw_joint
+from sim_backend.challenge.joint import HEAT_SHARE, draw_joint
 from sim_backend.challenge.mechanisms import MECHANISMS
+from sim_backend.challenge.ranges import CURRENT_SHARE, HOUSING_RISE, JOINT, SESSION_S
 from sim_backend.mechanisms.joint.gravity import Load
 from sim_backend.mechanisms.motor.motor import VOLTAGE
 from sim_backend.plant.parameters import PlantParameters
@@ -74,3 +75,13 @@ def test_every_mechanism_changes_what_the_drive_measures(name: str) -> None:
             rows.append(plant.advance(VOLTAGE, duty, 50))
         seen.append(np.array(rows))
     assert not np.array_equal(seen[0], seen[1], equal_nan=True)
+
+
+def test_the_range_of_the_warming_says_what_it_is_the_warming_of() -> None:
+    assert HOUSING_RISE == "rise of the housing in 250 s at 45% of the peak current"
+    assert pytest.approx(HEAT_SHARE, rel=0.02) == CURRENT_SHARE**2
+    for seed in range(20):
+        joint = draw_joint(np.random.default_rng(seed))
+        loss_w = HEAT_SHARE * joint.peak_a**2 * joint.tables["motor"]["resistance_ohm"]
+        rise_k = loss_w * SESSION_S / joint.tables["heat"]["housing_j_k"]  # if all heat stays there
+        assert JOINT[HOUSING_RISE].low <= rise_k <= JOINT[HOUSING_RISE].high

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,11 +12,13 @@ from bench.store.errors import NotFoundError
 from bench.study.changes import _sentence, add_effect, drop_effect
 from bench.study.compare import compare
 from bench.study.create import create_study, describe
-from bench.study.diagnosis.diagnose import _ranking, diagnose
+from bench.study.diagnosis.diagnose import _ranking, answer_of, diagnose
+from bench.study.diagnosis.judged import diagnosis_of_model
 from bench.study.diagnosis.search import search
 from bench.study.effects import effects_catalogue
 from bench.study.errors import StudyError
 from bench.study.ladder import ladder
+from bench.study.material import load_model
 from bench.study.models.base import StudyModel
 from bench.study.models.study import Study
 from compensator.lab.diagnosis import diagnosis as lab
@@ -317,7 +320,40 @@ def test_a_gain_unlike_the_errors_beside_it_says_why(after, told):
         (Gain(-0.676, -0.8, -0.5), "Dropping it harms: add it again."),
         (Gain(0.0, -0.1, 0.1), "dropping it does no harm that these trials show."),
         (Gain(0.2, 0.1, 0.3), "Dropping it helps: the model is better without it."),
+        (Gain(0.001, 0.0004, 0.0014), "that matters, being under 0.5%: the model is as good without it."),
+        (Gain(-0.0049, -0.02, -0.001), "that matters, being under 0.5%: the model is as good without it."),
     ],
 )
 def test_what_is_said_after_an_effect_was_dropped_is_about_dropping_it(gain, told):
     assert _sentence("Dropping", "elasticity", "held-out error", 0.0468, 0.0785, gain).endswith(told)
+
+
+@pytest.mark.parametrize(
+    ("gain", "told"),
+    [
+        (Gain(-0.0002, -0.0004, -0.0001), "That is no difference that is worth it, being under 0.5%: leave it out."),
+        (Gain(0.001, 0.0005, 0.006), "That is no difference that is worth it, being under 0.5%: leave it out."),
+        (Gain(0.0, -0.001, 0.001), "That is no difference that is worth it, being under 0.5%: leave it out."),
+        (Gain(0.001, -0.1, 0.1), "these trials do not show that it is needed."),
+        (Gain(0.006, 0.005, 0.007), "It helps: keep it."),
+    ],
+)
+def test_a_gain_of_next_to_nothing_is_called_so_however_sure(gain, told):
+    assert _sentence("Adding", "elasticity", "held-out error", 0.0031, 0.0031, gain).endswith(told)
+
+
+@pytest.mark.parametrize(
+    ("left_out", "sentence"),
+    [
+        ({"back_driving_friction": "why"}, "Load-dependent friction stands alone among what these trials can judge."),
+        ({"backlash": "why"}, "Load-dependent friction stands alone."),
+    ],
+)
+def test_beside_a_hidden_rival_a_name_stands_alone_among_what_can_be_judged(store, study, left_out, sentence):
+    material, model = load_model(store, study.study_id, study.model_id)
+    fit = material.fit_of(model)
+    assert "gravity" in fit.names
+    found = diagnosis_of_model(material, model, fit)
+    first = replace(found.candidates[0], effect=effect_named("load_friction"))
+    told = replace(found, classes=[("load_friction",)], candidates=[first], left_out=left_out)
+    assert [one.sentence for one in answer_of(fit, told, 1, model.id).classes] == [sentence]

@@ -10,6 +10,8 @@ from bench.study.changes import add_effect
 from bench.study.create import create_study
 from bench.study.diagnosis import judged
 from bench.study.diagnosis.diagnose import diagnose
+from bench.study.diagnosis.findings import numbers_explained
+from bench.study.models.diagnosis import Ranked
 from bench.study.report.report import report_html
 
 
@@ -82,3 +84,29 @@ def test_another_store_study_model_or_shape_is_another_question(ask, other):
 def test_material_of_no_store_is_asked_each_time(ask):
     """Nothing says that it is the same."""
     assert [ask(source=None), ask(source=None)] == [0, 1]
+
+
+def ranked(effect, before, after, gain):
+    return Ranked.model_construct(
+        effect=effect, held_out_before=before, held_out_after=after, gain=gain, gain_low=gain, gain_high=gain
+    )
+
+
+ALIKE = ranked("viscous_asymmetry", 0.02, 0.01, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("ranking", "told"),
+    [
+        ([], ""),
+        ([ALIKE, ranked("spring", 0.02, 0.019, 0.05)], ""),
+        ([ALIKE, ranked("backlash", 0.02, 0.019, 0.05)], ""),
+        (
+            [ALIKE, ranked("spring", 0.02, 0.019, 0.3)],
+            "Errors count all rows alike; gains count each row by how well it is known.",
+        ),
+        ([ALIKE, ranked("backlash", 0.04, 0.02, 0.5)], "Effects near reversals have errors of their own rows."),
+    ],
+)
+def test_what_a_reader_of_errors_and_gains_would_stumble_over_is_explained_where_it_is(ranking, told):
+    assert numbers_explained(ranking) == told

@@ -81,20 +81,42 @@ def test_it_ends_where_nothing_more_is_to_be_told(enough):
     assert len(bench.go(6)) == enough
 
 
-def suggested(*pairs):
-    found = [
-        PairOfRivals(true=true, rival=None, before=before, after=after, promised=0.0) for true, before, after in pairs
-    ]
-    return Suggested.model_construct(pairs=found)
+def suggested(*pairs, hopeless=()):
+    found, hopeless = (
+        [PairOfRivals(true=true, rival=None, before=before, after=after, promised=0.0) for true, before, after in some]
+        for some in (pairs, hopeless)
+    )
+    return Suggested.model_construct(pairs=found, hopeless=hopeless)
 
 
 def test_what_was_predicted_is_held_against_what_came():
     first = suggested(("spring", 1.0, 8.0), ("spring", 2.0, 6.0), ("cogging", 0.5, 5.0))
     came = what_came(first, suggested(("spring", 5.5, 9.0), ("spring", 7.0, 9.0), ("warm_up", 1.0, 4.0)))
     assert came == [
-        Came(effect="spring", predicted=6.0, came=5.5),
-        Came(effect="cogging", predicted=5.0, came=None),
+        Came(effect="spring", before=1.0, predicted=6.0, came=5.5),
+        Came(effect="cogging", before=0.5, predicted=5.0, came=None),
     ]
     told = in_words(came)
     assert "6.0 was predicted, 5.5 came" in told
     assert told.endswith("5.0 was predicted, it is no rival any more.")
+
+
+@pytest.mark.parametrize(
+    ("before", "came", "what", "closer"),
+    [
+        (1.0, 5.7, "5.7 was predicted, 5.7 came.", False),
+        (1.0, 5.4, "5.7 was predicted, 5.4 came.", False),
+        (1.0, 2.4, "5.7 was predicted, 2.4 came. The rivals are closer than the model said.", True),
+        (5.6, 5.5, "5.7 was predicted, 5.5 came, less than the 5.6 before. The rivals are closer", True),
+        (1.0, None, "5.7 was predicted, it is no rival any more.", False),
+    ],
+)
+def test_a_d_prime_that_falls_short_says_so_and_what_to_do(before, came, what, closer):
+    told = in_words([Came(effect="spring", before=before, predicted=5.7, came=came)])
+    assert what in told
+    assert ("take the rivals as one class" in told) == closer
+
+
+def test_a_rival_that_no_further_trial_tells_is_a_rival_all_the_same():
+    (one,) = what_came(suggested(("spring", 1.0, 6.0)), suggested(hopeless=[("spring", 1.5, 1.8)]))
+    assert one.came == 1.5

@@ -147,6 +147,15 @@ def test_a_suggestion_says_what_of_its_prediction_is_promised(promised, told):
     assert told in SUGGEST._sentence(Suggestion(pairs, (), (pick,), 0.01), SimpleNamespace(verdict="missing"))
 
 
+def test_a_pair_that_no_trial_tells_apart_is_listed_once():
+    pairs = (
+        Pair("spring", "cogging", 0.1, 0.1, 0.2, 0.1, 0.0), Pair("cogging", "spring", 0.1, 0.1, 0.2, 0.1, 0.0),
+        Pair("cogging", None, 0.1, 0.1, 0.2, 0.1, 0.0),
+    )  # fmt: skip
+    told = SUGGEST._sentence(Suggestion((), pairs, (), 0.01), SimpleNamespace(verdict="missing"))
+    assert told.endswith("Spring or cable torque and Cogging; Cogging and no missing effect.")
+
+
 @pytest.mark.parametrize(("verdict", "supposes"), [("nothing", True), ("missing", False)])
 def test_where_nothing_is_sure_a_suggestion_says_what_it_supposes(verdict, supposes):
     pairs = (Pair("spring", None, 1.0, 7.0, 9.0, 4.0, 6.0), Pair("cogging", "spring", 1.5, 8.0, 9.0, 4.0, 0.0))
@@ -154,6 +163,26 @@ def test_where_nothing_is_sure_a_suggestion_says_what_it_supposes(verdict, suppo
     told = SUGGEST._sentence(Suggestion(pairs, (), (pick,), 0.01), SimpleNamespace(verdict=verdict))
     assert "rises from 1.0 to 7.0" in told
     assert ("That holds if one of Spring or cable torque and Cogging is missing" in told) == supposes
+
+
+@pytest.mark.parametrize(("now", "told"), [(2.4, True), (5.9, False)])
+def test_a_d_prime_that_fell_with_the_trials_that_were_added_is_told(store, monkeypatch, now, told):
+    study = create_study(store, "falls", [run(store, "excitation", MOTIONS)]).study_id
+    seen = []
+
+    def d_prime_of(fit, _diagnosis, _name):
+        seen.append(len(fit.dataset.trials))
+        return 5.7 if len(seen) == 1 else now
+
+    monkeypatch.setattr("bench.study.suggestion.since.d_prime_of", d_prime_of)
+    suggest(store, study, CONFIGURATION, trials=1)
+    assert seen == []  # there is nothing before
+    extended = extend_study(store, study, [run(store, "excitation", {**MOTIONS, "speed_rad_s": 1.5})])
+    sentence = suggest(store, study, CONFIGURATION, trials=1).sentence
+    assert seen == [extended.trials - len(extended.added), extended.trials]
+    assert (" fell from 5.7 to 2.4. The rivals are closer than the model said." in sentence) == told
+    assert "The rivals are closer" not in suggest(store, study, CONFIGURATION, trials=1, since_before=False).sentence
+    assert len(seen) == 2
 
 
 def test_suggestions_start_from_the_diagnosis_that_was_made(store, made, found, monkeypatch):

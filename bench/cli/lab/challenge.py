@@ -156,6 +156,17 @@ def _print_score(score: "Score") -> None:
     if score.perfect:
         whole = "All that these recordings can tell" if score.untold or score.faint else "All of it"
         say(f"{whole}, and nothing else.")
+    else:
+        say(_loss(score))
+
+
+def _loss(score: "Score") -> str:
+    """The verdict on a guess that is not all right; what need not be named does not count as hidden."""
+    hidden, wrong = len(score.right) + len(score.missed), len(score.wrong)
+    found = f"{len(score.right)} of {hidden} hidden mechanism{'s' * (hidden != 1)} found"
+    if not hidden:
+        found = "nothing was hidden that could be found"
+    return f"Not right: {found}, {wrong or 'no'} name{'s' * (wrong != 1)} wrong."
 
 
 def _print_ranges() -> None:

@@ -16,7 +16,8 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
 
 def diagnosis(found: "Diagnosis") -> None:
     """The verdict and the ranking."""
-    from bench.study.models.diagnosis import ORDER  # imported when needed: `--help` starts at once
+    from bench.study.diagnosis.findings import numbers_explained  # imported when needed: `--help` starts at once
+    from bench.study.models.diagnosis import ORDER
 
     say(found.sentence)
     if found.slight:
@@ -45,6 +46,8 @@ def diagnosis(found: "Diagnosis") -> None:
     if rows:
         columns = ["effect", "named", "score#", "p#", "held out before#", "after#", "gain#", "d'#", "why not"]
         table(f"Effects by evidence: {ORDER}", columns, rows)
+        if explained := numbers_explained(found.ranking):
+            say(explained)
     if found.provisional:
         say(found.provisional.sentence)
     for note in found.notes:
@@ -75,6 +78,19 @@ def search(found: "Searched") -> None:
     say(found.sentence)
 
 
+def not_judged(last: "Diagnosis", model_id: int | None) -> str:
+    """How many effects the trials could not judge, and the command that says why; empty where they judged all.
+
+    Args:
+        last: the diagnosis that a search ended with.
+        model_id: the model that was asked for; None: the newest.
+    """
+    count = sum(finding.code == "not-judged" for finding in last.findings)
+    beside = "" if model_id is None else f" --model {model_id}"
+    what = f"{count} effect{'s' * (count != 1)} could not be judged on these trials"
+    return f"{what}; why: friction-bench study diagnose {last.study_id}{beside}" if count else ""
+
+
 def suggestion(found: "Suggested") -> None:
     """Trials to record next, and why."""
     say(found.diagnosis)
@@ -94,8 +110,23 @@ def suggestion(found: "Suggested") -> None:
     for one in found.kept_out:
         say(f"kept out: {one.kind}, experiment {one.experiment_id}, {one.outcome}: {one.reason}")
     pairs = [(one.true, one.rival or "nothing", one.before, one.after, one.promised) for one in found.pairs]
-    columns = ["truth", "rival", "now#", "then#", "nine in ten#"]
-    table("If the truth is one, predicted d' against the other", columns, pairs)
+    if pairs:
+        columns = ["truth", "rival", "now#", "then#", "nine in ten#"]
+        table("If the truth is one, predicted d' against the other", columns, pairs)
+
+
+def not_settled(found: "Diagnosis", trials: int) -> str:
+    """The last words after so many suggested trials, where they have not brought one name; else empty."""
+    came = f"It is not settled: {trials} suggested trial{'s' * (trials != 1)} came, and"
+    if found.conclusion.code == "likely":
+        return f"{came} what is likely is not sure."
+    if not found.classes or len(found.classes[0].effects) == 1:
+        return ""
+    names = " and ".join(found.classes[0].effects)
+    return (
+        f"{came} {names} are not told apart: take them as one class, or see what else would tell: friction-bench study "
+        f"coverage {found.study_id}"
+    )
 
 
 def _values(parameters: "Json") -> str:

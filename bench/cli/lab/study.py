@@ -15,7 +15,6 @@ from bench.cli.output import Json, print_json, refuse_taken, say, table, write_w
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.store import Store
-    from bench.study.models.change import Searched
     from bench.study.models.diagnosis import Diagnosis
     from bench.study.models.study import Study
 
@@ -139,7 +138,11 @@ def simulate_command(
 
 @app.command("diagnose")
 def diagnose_command(context: typer.Context, study: StudyId, model: Model = None, as_json: Json = False) -> None:
-    """Which physical effect is missing, how sure is that, and what would adding it bring."""
+    """Which physical effect is missing, how sure is that, and what would adding it bring.
+
+    Gains count each row by how well it is known, errors count all alike; effects near reversals and at starts from
+    rest have errors of their own rows.
+    """
     from bench.study.diagnosis.diagnose import diagnose
 
     session = session_of(context)
@@ -216,15 +219,19 @@ def search_command(
     as_json: Json = False,
 ) -> None:
     """Add effects one after the other until nothing is missing; each step is a rung of the ladder."""
-    from bench.study.diagnosis.search import search
+    from bench.study.diagnosis.search import search_and_diagnose
 
     session = session_of(context)
-
-    def show(found: "Searched") -> None:
-        diagnosis_tables.search(found)
-        say(session.in_full(diagnosis_tables.next_step(found, None if found.steps else model)))
-
-    _show(context, as_json, show, search, study, model, most)
+    with session.open_store() as store:
+        found, last = search_and_diagnose(store, study, model, most)
+    if as_json:
+        print_json(found)
+        return
+    of_model = None if found.steps else model
+    diagnosis_tables.search(found)
+    if unjudged := diagnosis_tables.not_judged(last, of_model):
+        say(session.in_full(unjudged))
+    say(session.in_full(diagnosis_tables.next_step(found, of_model)))
 
 
 @app.command("suggest")

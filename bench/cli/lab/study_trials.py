@@ -30,11 +30,13 @@ REPLACED = ("tripped", "failed", "refused")  # outcomes after which the next bes
 
 
 def suggested(
-    session: BenchSession, study_id: int, model_id: int | None, trials: int, refused: Collection[str] = ()
+    session: BenchSession, study_id: int, model_id: int | None, trials: int, refused: Collection[str] | None = None
 ) -> Suggested:
-    """What to record next."""
+    """What to record next; within rounds, which tell themselves what came, without the trials that are refused."""
     with session.open_store() as store:
-        return suggest.suggest(store, study_id, session.configuration(), model_id, trials, refused)
+        return suggest.suggest(
+            store, study_id, session.configuration(), model_id, trials, refused or (), refused is None
+        )
 
 
 def carry_out_all(
@@ -49,6 +51,8 @@ def carry_out_all(
         print_json(running.told())
     elif (last := running.rounds[-1].diagnosis) is not None:
         tables.diagnosis(last)
+        if open_still := tables.not_settled(last, sum(not one.reason for one in tried)):
+            say(session.in_full(open_still))
         say(session.in_full(tables.next_step(last, model_id)))
     if running.signal_code is not None:
         raise typer.Exit(running.signal_code)

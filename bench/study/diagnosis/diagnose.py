@@ -53,7 +53,7 @@ def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int
         p_value=stated(found.p_value),
         notes=[*(note.text for note in found.notes), *(one.text for one in not_told)],
         data_problems=found.data_problems,
-        classes=[_class(members) for members in found.classes[:1]] if named else [],
+        classes=[_class(members, _has_hidden_rival(members, fit, found)) for members in found.classes[:1] if named],
         ranking=[] if found.too_short else _ranking(fit.dataset, found, named, first),
         slight=bool(advice),
         advice=advice,
@@ -106,10 +106,17 @@ def _provisional(dataset: Dataset, curve: Provisional) -> ProvisionalTerm:
     )
 
 
-def _class(members: tuple[str, ...]) -> EffectClass:
+def _has_hidden_rival(members: tuple[str, ...], fit: Fit, found: diagnosis.Diagnosis) -> bool:
+    """Whether a free scale of the model hides a rival, so that no trial could judge it; the answer tells its name."""
+    hidden = [one for one in map(effect_named, found.left_out) if set(one.hidden_by) & set(fit.names)]
+    return any(set(members) & set(one.confused_with) for one in hidden)
+
+
+def _class(members: tuple[str, ...], hidden_rival: bool) -> EffectClass:
     titles = [effect_named(name).title for name in members]
     if len(members) == 1:
-        return EffectClass(effects=list(members), sentence=f"{titles[0]} stands alone.", separating_trial=None)
+        among = " among what these trials can judge" if hidden_rival else ""
+        return EffectClass(effects=list(members), sentence=f"{titles[0]} stands alone{among}.", separating_trial=None)
     return EffectClass(
         effects=list(members),
         sentence=f"These trials cannot tell apart: {'; '.join(titles)}.",

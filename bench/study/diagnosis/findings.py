@@ -1,9 +1,13 @@
 """What a diagnosis found, with codes: the one place where the lab's answer becomes codes, numbers and words."""
 
-from bench.study.models.diagnosis import Conclusion, ConclusionCode, Finding, Value
+from collections.abc import Sequence
+
+from bench.study.models.diagnosis import Conclusion, ConclusionCode, Finding, Ranked, Value
 from compensator.lab.chance import SIGNIFICANT, stated
 from compensator.lab.diagnosis.confirmation import nearest_one
 from compensator.lab.diagnosis.diagnosis import Diagnosis
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.gain import Gain
 
 
 def conclusion_of(found: Diagnosis) -> Conclusion:
@@ -25,6 +29,25 @@ def findings_of(found: Diagnosis) -> list[Finding]:
 def not_judged(effect: str, reason: str) -> Finding:
     """An effect that these trials cannot show."""
     return Finding(code="not-judged", values={"effect": effect, "reason": reason}, text=f"Not judged: {reason}.")
+
+
+def numbers_explained(ranking: Sequence[Ranked]) -> str:
+    """What a reader of the ranking's errors and gains would stumble over; empty where there is nothing."""
+    told = []
+    if any(_gain(one).is_unlike(one.held_out_before, one.held_out_after) for one in ranking):
+        told.append("Errors count all rows alike; gains count each row by how well it is known.")
+    judged_on = {effect_named(one.effect).rows for one in ranking}
+    if len(judged_on) > 1 and len({f"{one.held_out_before:.2%}" for one in ranking}) > 1:
+        own = [words for rows, words in _OWN_ROWS.items() if rows in judged_on]
+        told.append(f"Effects {' and '.join(own)} have errors of their own rows.")
+    return " ".join(told)
+
+
+_OWN_ROWS = {"moving": "near reversals", "breakaway": "at starts from rest"}
+
+
+def _gain(one: Ranked) -> Gain:
+    return Gain(one.gain, one.gain_low, one.gain_high)
 
 
 def _code(found: Diagnosis) -> ConclusionCode:

@@ -5,6 +5,7 @@ from typing import Any
 
 from bench.report import Figure, Line, Points, Section, Table
 from bench.store import Store
+from bench.study.diagnosis.findings import numbers_explained
 from bench.study.models.comparison import Comparison
 from bench.study.models.diagnosis import ORDER, Diagnosis, ProvisionalTerm, Ranked
 from bench.study.models.study import Study
@@ -57,7 +58,8 @@ def diagnosis_section(title: str, found: Diagnosis, compared: Comparison) -> Sec
     shown += found.ranking[:PICTURES]
     figures = [figure for one in shown if (figure := picture(one, compared.effort.unit))]
     tables = [Table(f"Effects by evidence: {ORDER}", columns, rows)] if rows else []
-    return Section(title, [*words, *found.notes], tables, figures)
+    explained = numbers_explained(found.ranking)
+    return Section(title, [*words, *([explained] if explained else []), *found.notes], tables, figures)
 
 
 def picture(ranked: Ranked | ProvisionalTerm, unit: str) -> Figure | None:

@@ -11,6 +11,12 @@ from bench.study.suggestion.options import Choice
 from bench.study.suggestion.suggested import Came, Suggested
 from compensator.lab.effects.catalogue import effect_named
 
+SHORT = 0.9  # of a d' that was predicted: less that came is told
+CLOSER = (
+    "The rivals are closer than the model said. Further trials are chosen by what came; if they bring less than was "
+    "predicted again, take the rivals as one class, or let the bench move farther, faster, or under other loads."
+)
+
 
 def what_came(suggested: Suggested, next_suggested: Suggested) -> list[Came]:
     """Of each rival of a suggestion, the smallest d' that was predicted, and that the next suggestion begins with.
@@ -20,17 +26,32 @@ def what_came(suggested: Suggested, next_suggested: Suggested) -> list[Came]:
         next_suggested: the same after.
     """
     predicted = _smallest([(pair.true, pair.after) for pair in suggested.pairs])
-    came = _smallest([(pair.true, pair.before) for pair in next_suggested.pairs])
-    return [Came(effect=name, predicted=value, came=came.get(name)) for name, value in predicted.items()]
+    before = _smallest([(pair.true, pair.before) for pair in suggested.pairs])
+    hopeless = _smallest([(pair.true, pair.before) for pair in next_suggested.hopeless])
+    came = hopeless | _smallest([(pair.true, pair.before) for pair in next_suggested.pairs])
+    return [
+        Came(effect=name, before=before[name], predicted=value, came=came.get(name))
+        for name, value in predicted.items()
+    ]
 
 
 def in_words(came: Sequence[Came]) -> str:
-    """One sentence."""
-    parts = []
-    for one in came:
-        what = "it is no rival any more" if one.came is None else f"{one.came:.1f} came"
-        parts.append(f"{effect_named(one.effect).title}: {one.predicted:.1f} was predicted, {what}")
-    return f"Smallest d' with these trials. {'; '.join(parts)}."
+    """What came, and where it is less than was predicted, or than there was before, what that means."""
+    parts = [f"{effect_named(one.effect).title}: {one.predicted:.1f} was predicted, {_came(one)}" for one in came]
+    told = f"Smallest d' with these trials. {'; '.join(parts)}."
+    if any(one.came is not None and (_fell(one) or one.came < SHORT * one.predicted) for one in came):
+        told += f" {CLOSER}"
+    return told
+
+
+def _came(one: Came) -> str:
+    if one.came is None:
+        return "it is no rival any more"
+    return f"{one.came:.1f} came" + (f", less than the {one.before:.1f} before" if _fell(one) else "")
+
+
+def _fell(one: Came) -> bool:
+    return one.came is not None and round(one.came, 1) < round(one.before, 1)
 
 
 def _smallest(values: Sequence[tuple[str, float]]) -> dict[str, float]:

@@ -6,6 +6,7 @@ from bench.calibration import with_friction
 from bench.config.configuration import BenchConfiguration
 from bench.control.drive_factory import is_simulated
 from bench.store import Experiment, Store
+from bench.store.records import ModelRow
 from bench.study.diagnosis.judged import diagnosis_of_model
 from bench.study.errors import StudyError, lab_errors
 from bench.study.material import Material, facts_of, load_model
@@ -15,6 +16,7 @@ from bench.study.selection import Criterion
 from bench.study.suggestion.earlier_trials import kept_out, without
 from bench.study.suggestion.options import Choice, choices
 from bench.study.suggestion.predict import choose
+from bench.study.suggestion.since import Judged, fallen
 from bench.study.suggestion.suggested import KeptOut, PairOfRivals, Suggested, SuggestedTrial
 from compensator.lab import progress
 from compensator.lab.diagnosis.diagnosis import Diagnosis
@@ -33,12 +35,22 @@ def suggest(
     model_id: int | None = None,
     trials: int = MOST_TRIALS,
     refused: Collection[str] = (),
+    since_before: bool = True,
 ) -> Suggested:
     """The trials that would raise the smallest d' of the leading rivals most, per minute of bench time.
 
     Every trial that the bench can run inside its limits is run on the joint of the fitted model first. What was
     suggested before, and tripped or failed on the joint itself, is kept out, and named. A simulated joint repeats a
     trial to the bit: what the study has of it already is not suggested again.
+
+    Args:
+        store: with the study.
+        study_id: which study.
+        configuration: of the bench.
+        model_id: the model; None: the newest.
+        trials: how many are suggested at most.
+        refused: names of trials that are not suggested.
+        since_before: say where the trials that the study was extended by brought less than there seemed to be before.
 
     Raises:
         StudyError: no such model, a study of another rig, data that are wrong themselves, or what a trial would show
@@ -64,13 +76,14 @@ def suggest(
         impossible = kept_out(store, study_id)
         told = [*impossible, *(_recorded(store, material) if repeats else ())]
         possible = [one for one in without(_fitted_ones(material, possible), told) if one.name not in refused]
+        told_of_before = _fallen(store, study_id, model, (fit, diagnosis)) if since_before else ""
         found, chosen = choose(fit, diagnosis, configuration, possible, trials, once=repeats)
     return Suggested(
         study_id=study_id,
         model_id=model.id,
         verdict=diagnosis.verdict,
         diagnosis=diagnosis.sentence,
-        sentence=_sentence(found, diagnosis),
+        sentence=" ".join(filter(None, (told_of_before, _sentence(found, diagnosis)))),
         minutes=sum(pick.minutes for pick in found.picks),
         note=note_for(study_id),
         pairs=list(map(PairOfRivals.model_validate, found.pairs)),
@@ -78,6 +91,20 @@ def suggest(
         kept_out=[_kept_out(one) for one in impossible],
         trials=[_pick(pick, choice, found, material) for pick, choice in zip(found.picks, chosen, strict=True)],
     )
+
+
+def _fallen(store: Store, study_id: int, model: ModelRow, now: Judged) -> str:
+    """As `fallen`; empty where the model did not come of an extension: its parent has other effects, or is none."""
+    number = model.parent_id
+    if number is None or store.model(number).effects != model.effects:
+        return ""
+
+    def before() -> Judged:
+        material, parent = load_model(store, study_id, number)
+        fit = material.fit_of(parent)
+        return fit, diagnosis_of_model(material, parent, fit)
+
+    return fallen(before, now)
 
 
 def _recorded(store: Store, material: Material) -> list[Experiment]:
@@ -156,5 +183,7 @@ def _condition(found: Suggestion, diagnosis: Diagnosis) -> str:
 
 
 def _hopeless(found: Suggestion) -> str:
-    names = dict.fromkeys(_names(pair.true, pair.rival) for pair in found.hopeless)
-    return f"Not told apart by any trial of this bench: {'; '.join(names)}." if names else ""
+    pairs: dict[frozenset[str | None], str] = {}  # once, whichever of the two is taken for the truth
+    for pair in found.hopeless:
+        pairs.setdefault(frozenset((pair.true, pair.rival)), _names(pair.true, pair.rival))
+    return f"Not told apart by any trial of this bench: {'; '.join(pairs.values())}." if pairs else ""

@@ -60,6 +60,7 @@ class Came(StudyModel):
     """Smallest d' of a rival: predicted with the trials of a round, and what the next round begins with."""
 
     effect: str
+    before: Number = Field(description="what that round began with")
     predicted: Number
     came: float | None = Field(description="null: it is no rival any more")
 

@@ -11,6 +11,8 @@ import { momentList } from "./errormap.js";
 
 const SHOWN = 6;
 const ORDER = "those confirmed by their own numbers first, then by score";
+const NOTABLE = 0.01; // of a gain
+const UNLIKE = "Gains count each row by how well it is known, errors count all alike; effects near reversals and at starts from rest have errors of their own rows.";
 const MOMENTS = 4; // of a candidate: all have the same to say
 const spaced = (names) => names.map((name) => name.replaceAll("_", " "));
 
@@ -31,7 +33,7 @@ export function diagnosis(place, found, { add, finish, path, linked, effort }) {
     problems.map(({ text }) => h("div", { class: "problem" }, capital(spoken(text)))),
     notes.map(({ text }) => h("p", { class: "soft" }, capital(spoken(text)))),
     !found.slight && found.classes.map(className), curve, named, first.some((one) => !one.in_class) && folded(found, others),
-    found.ranking.length > SHOWN && more,
+    found.ranking.length > SHOWN && more, found.ranking.some(isUnlike) && h("p", { class: "soft" }, UNLIKE),
     notJudged.length > 0 && h("details", {}, h("summary", {}, `${notJudged.length} effects could not be judged on these trials`), notJudged.map(({ text }) => h("p", { class: "soft" }, spoken(text)))));
   if (curve) provisional(curve, found.provisional, ways);
   for (const one of first) card(one.in_class ? named : others, one, ways);
@@ -39,6 +41,11 @@ export function diagnosis(place, found, { add, finish, path, linked, effort }) {
     const rest = more.querySelector(".cards");
     if (more.open && !rest.children.length) for (const one of found.ranking.slice(SHOWN)) card(rest, one, ways);
   });
+}
+
+// a gain that is notably not what the two errors have
+function isUnlike({ gain, held_out_before: before, held_out_after: after }) {
+  return before > 0 && Math.abs(gain - (1 - after / before)) > NOTABLE;
 }
 
 // what is named comes first; where nothing is, what was tested is shown at once
