@@ -210,20 +210,25 @@ def test_where_no_effect_is_offered_the_next_step_is_a_command(verdict, code, sl
     assert next_step(found, None) == f"next: friction-bench {command}"
 
 
-def test_every_reason_against_an_effect_is_in_its_row_and_odd_gains_are_explained_below(monkeypatch, capsys):
-    told = {"why_not": ["may be luck", "gain not sure"], "effect": "spring", "in_class": False}
+def test_every_reason_against_an_effect_and_odd_gains_are_explained_below(monkeypatch, capsys):
+    told = {"why_not": ["may be luck", "gain not sure"], "effect": "spring"}
     numbers = dict.fromkeys(
         ("score", "p_value", "held_out_before", "held_out_after", "gain", "gain_low", "gain_high", "d_prime"), 0.5
     )
     found = SimpleNamespace(
         sentence="", slight=False, findings=[], classes=[], provisional=None, notes=[],
-        ranking=[SimpleNamespace(**told, **numbers)],
+        ranking=[
+            SimpleNamespace(**told, **numbers),
+            SimpleNamespace(**{**told, **numbers, "effect": "cogging", "score": -1.0}),
+        ],
     )  # fmt: skip
     shown = []
     monkeypatch.setattr(diagnosis_tables, "table", lambda *table: shown.append(table))
     diagnosis_tables.diagnosis(found)
     _, columns, rows = shown[0]
     row = dict(zip(columns, rows[0], strict=True))
-    assert row["why not"] == "may be luck, gain not sure"
     assert row["p#"] == "0.5"
-    assert "gains count each row by how well it is known" in capsys.readouterr().out
+    below = capsys.readouterr().out
+    assert "gains count each row by how well it is known" in below
+    assert "not spring: may be luck, gain not sure" in below
+    assert "no evidence (score not above 0): cogging" in below

@@ -3,22 +3,19 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from bench.cli.output import percent, say, share_interval, table, text
+from bench.cli.output import percent, say, table, text
 from compensator.lab.chance import chance_cell
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.json_types import Json
     from bench.study.models.change import Searched
-    from bench.study.models.diagnosis import Diagnosis, NotDiagnosed
+    from bench.study.models.diagnosis import Diagnosis, NotDiagnosed, Ranked
     from bench.study.models.study import Extended
     from bench.study.suggestion.suggested import Suggested
 
 
 def diagnosis(found: "Diagnosis") -> None:
     """The verdict and the ranking."""
-    from bench.study.diagnosis.findings import numbers_explained  # imported when needed: `--help` starts at once
-    from bench.study.models.diagnosis import ORDER
-
     say(found.sentence)
     if found.slight:
         say(found.advice)
@@ -29,29 +26,49 @@ def diagnosis(found: "Diagnosis") -> None:
         say(members.sentence)
         if members.separating_trial:
             say(f"  to tell them apart: {members.separating_trial}")
-    rows = [
-        (
-            one.effect,
-            "yes" if one.in_class else "",
-            one.score,
-            chance_cell(one.p_value),
-            percent(one.held_out_before),
-            percent(one.held_out_after),
-            share_interval(one.gain, one.gain_low, one.gain_high),
-            text(one.d_prime),
-            ", ".join(one.why_not),
-        )
-        for one in found.ranking
-    ]
-    if rows:
-        columns = ["effect", "named", "score#", "p#", "held out before#", "after#", "gain#", "d'#", "why not"]
-        table(f"Effects by evidence: {ORDER}", columns, rows)
-        if explained := numbers_explained(found.ranking):
-            say(explained)
+    _ranking(found.ranking)
     if found.provisional:
         say(found.provisional.sentence)
     for note in found.notes:
         say(note)
+
+
+def _ranking(ranking: Sequence["Ranked"]) -> None:
+    """The effects and their numbers, and below what each lacks."""
+    from bench.study.diagnosis.findings import numbers_explained  # imported when needed: `--help` starts at once
+    from bench.study.models.diagnosis import ORDER
+
+    rows = [
+        (
+            one.effect,
+            one.score,
+            chance_cell(one.p_value),
+            percent(one.held_out_before),
+            percent(one.held_out_after),
+            f"{_tenths(one.gain)}, {_tenths(one.gain_low)} .. {_tenths(one.gain_high)}",
+            text(one.d_prime),
+        )
+        for one in ranking
+    ]
+    if rows:
+        columns = ["effect", "score#", "p#", "before#", "after#", "gain, low .. high [%]#", "d'#"]
+        table(f"Effects by evidence: {ORDER}", columns, rows)
+        if explained := numbers_explained(ranking):
+            say(explained)
+        for line in why_not_named(ranking):
+            say(line)
+
+
+def _tenths(share: float) -> str:
+    """A share as per cent, to a tenth; nothing has no sign."""
+    return f"{round(100.0 * share, 1) + 0.0:.1f}"
+
+
+def why_not_named(ranking: Sequence["Ranked"]) -> list[str]:
+    """A line for each effect that is not named though the rows speak for it, and one for all the others."""
+    told = [f"not {one.effect}: {', '.join(one.why_not)}" for one in ranking if one.why_not and one.score > 0.0]
+    others = [one.effect for one in ranking if one.why_not and not one.score > 0.0]
+    return [*told, f"no evidence (score not above 0): {', '.join(others)}"] if others else told
 
 
 def next_step(found: "Diagnosis | Searched", model_id: int | None) -> str:
