@@ -117,6 +117,20 @@ def test_a_guess_that_is_not_right_gets_a_verdict_too(command, tmp_path, guess, 
     assert shown[-1] == told
 
 
+@pytest.mark.parametrize(
+    ("guess", "told"),
+    [
+        ("spring", "All of it, and nothing else."),
+        ("spring/cogging/backlash", "All of it, and nothing else. A name in a class counts by its size: 0.33 of 1."),
+    ],
+)
+def test_a_name_in_a_class_counts_by_its_size(command, tmp_path, guess, told):
+    (tmp_path / "set").mkdir()
+    truth = Truth("spring", "spring", 1.0, "size", "1", 0.2, {}, 0.2)
+    write_sealed(Answer(1, "hard", 0, (truth,), {}), tmp_path / "set", tmp_path / "set.answer")
+    assert command("reveal", "set.answer", "--guess", guess).stdout.strip().splitlines()[-1] == told
+
+
 def test_where_nothing_is_hidden_a_name_is_wrong(command, tmp_path):
     (tmp_path / "set").mkdir()
     write_sealed(Answer(1, "hard", 0, (), {}), tmp_path / "set", tmp_path / "set.answer")

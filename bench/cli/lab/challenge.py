@@ -155,9 +155,16 @@ def _print_score(score: "Score") -> None:
             say(f"{word}: {', '.join(called)}{note}")
     if score.perfect:
         whole = "All that these recordings can tell" if score.untold or score.faint else "All of it"
-        say(f"{whole}, and nothing else.")
+        say(f"{whole}, and nothing else.{_by_classes(score)}")
     else:
         say(_loss(score))
+
+
+def _by_classes(score: "Score") -> str:
+    """What naming a class takes from a right guess; empty where each mechanism stands alone."""
+    if all(size == 1 for size in score.class_sizes):
+        return ""
+    return f" A name in a class counts by its size: {score.points:.2g} of {len(score.right)}."
 
 
 def _loss(score: "Score") -> str:
