@@ -195,7 +195,7 @@ def _searched(store: Store, study_id: int, first: int) -> tuple[int, Diagnosis, 
 
 
 def _confused(step: SearchStep) -> str:
-    title, *others = (effect_named(name).title.lower() for name in (step.effect, *step.rivals))
+    title, *others = (effect_named(name).in_sentence for name in (step.effect, *step.rivals))
     return f"The {title} that was added may as well be {' or '.join(others)}: these trials cannot tell them apart."
 
 

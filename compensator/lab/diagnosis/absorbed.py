@@ -4,6 +4,7 @@ from collections.abc import Collection
 
 from compensator.lab.diagnosis.note import Note, Value
 from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.effects.effect import Effect
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.intervals import estimates
 
@@ -26,14 +27,13 @@ def absorbed(fit: Fit, left_out: Collection[str]) -> list[Note]:
     if share < LEAST_SHARE:
         return []
     hidden = [one for one in map(effect_named, left_out) if OFFSET in one.hidden_by]
-    return [_note(one.name, one.title, one.excited_by, offset.value, offset.unit, share) for one in hidden]
+    return [_note(one, offset.value, offset.unit, share) for one in hidden]
 
 
-def _note(name: str, title: str, excited_by: str, value: float, unit: str, share: float) -> Note:
-    values: dict[str, Value] = {"effect": name, "offset": value, "unit": unit, "share": share}
-    effect = f"{title[0].lower()}{title[1:]}"
+def _note(effect: Effect, value: float, unit: str, share: float) -> Note:
+    values: dict[str, Value] = {"effect": effect.name, "offset": value, "unit": unit, "share": share}
     text = (
-        f"The model's offset, {value:.3g} {unit}, is {share:.0%} of dry friction: it may as well be {effect}, which "
-        f"these trials cannot tell from it; {excited_by} would."
+        f"The model's offset, {value:.3g} {unit}, is {share:.0%} of dry friction: it may as well be "
+        f"{effect.in_sentence}, which these trials cannot tell from it; {effect.excited_by} would."
     )
     return Note("absorbed", text, values)

@@ -118,7 +118,7 @@ def _hidden_rivals(first: Answer, fit: Fit, left_out: Collection[str]) -> str:
         return ""
     name = first.candidates[0].effect.name
     return "".join(
-        f" It may as well be {one.title.lower()}, which the free scale of {' and '.join(scales)} hides."
+        f" It may as well be {one.in_sentence}, which the free scale of {' and '.join(scales)} hides."
         for one in map(effect_named, left_out)
         if name in one.confused_with and (scales := [scale for scale in one.hidden_by if scale in fit.names])
     )

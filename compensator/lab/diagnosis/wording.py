@@ -39,7 +39,7 @@ def unknown_in_words(nearest: Candidate, driver: str, p_value: float) -> str:
         driver, look = "where the joint has turned back, as what bends along and slides does", f" {LOOK_AT_HOSES}"
     return (
         f"Something is missing, and it is none of the catalogue: it varies with {driver}; the nearest formula, "
-        f"{nearest.effect.title.lower()}, {why} ({chance_in_words(p_value)}).{look}"
+        f"{nearest.effect.in_sentence}, {why} ({chance_in_words(p_value)}).{look}"
     )
 
 
@@ -76,7 +76,7 @@ def named_in_words(best: Candidate, of: str) -> str:
         best: the effect.
         of: what cannot tell it from others: "trials", or "starts" from rest.
     """
-    others = ", ".join(effect_named(name).title.lower() for name in best.rivals)
+    others = ", ".join(effect_named(name).in_sentence for name in best.rivals)
     return f"{best.effect.title} is missing" + (f"; these {of} cannot tell it from {others}" if others else "")
 
 

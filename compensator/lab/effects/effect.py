@@ -17,6 +17,7 @@ Shape = tuple[float, ...]
 MotionRows = Literal["sliding", "moving"]
 EffectRows = Literal[MotionRows, "breakaway"]
 Round = Literal["force", "against the motion"]
+PEOPLE = ("Coulomb", "Stribeck")
 MOST_TURNS = (
     10.0  # over all trials: beyond, nothing winds up with the shaft, and its position is the time it has turned
 )
@@ -370,6 +371,11 @@ class Effect:
     def grid(self, motions: Sequence[Motion]) -> list[Shape]:
         """Shapes to scan, given the motions of all trials."""
         return self.shapes(motions[0]) if self.shape_over is None else [self.shape_over(motions)]
+
+    @property
+    def in_sentence(self) -> str:
+        """Its title within a sentence: names of people stay as they are written."""
+        return self.title if self.title.startswith(PEOPLE) else f"{self.title[0].lower()}{self.title[1:]}"
 
     @property
     def in_full(self) -> str:

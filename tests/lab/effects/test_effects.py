@@ -302,3 +302,16 @@ def test_what_goes_by_the_current_leaves_out_the_back_emf_of_a_voltage(name):
         same = same * ((held.predicted + more) / (plain.predicted + more)) ** 2
     assert found == pytest.approx(same)
     assert without != pytest.approx(same, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("coulomb_asymmetry", "direction-asymmetric Coulomb friction"),
+        ("coulomb_quadrant", "Coulomb friction by quadrant"),
+        ("back_emf_error", "back-EMF constant in error"),
+        ("load_friction_quadratic", "quadratic load-dependent friction"),
+    ],
+)
+def test_a_title_within_a_sentence_keeps_names_of_people(name, words):
+    assert EFFECTS[name].in_sentence == words

@@ -1,4 +1,4 @@
-"""Load-dependent friction, quadratic."""
+"""Quadratic load-dependent friction."""
 
 import numpy as np
 
@@ -20,7 +20,7 @@ PARAMETERS = (Parameter("quadratic load loss", "1/{effort}", 0.0),)
 
 EFFECT = Effect(
     name="load_friction_quadratic",
-    title="Load-dependent friction, quadratic",
+    title="Quadratic load-dependent friction",
     physics=(
         "Gear friction that grows faster than the transmitted torque: teeth and bearings deflect and more surface rubs."
     ),
