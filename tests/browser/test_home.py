@@ -23,6 +23,7 @@ def test_the_first_page_has_few_controls_and_few_words(open_page, width, token):
 def test_it_is_painted_within_a_second_and_sends_little(open_page):
     page = open_page("")
     page.locator(".door").first.wait_for()
+    page.wait_for_function("performance.getEntriesByName('first-contentful-paint').length > 0")
     first_paint, answered, sent = page.evaluate(
         """() => [performance.getEntriesByName("first-contentful-paint")[0].startTime,
           performance.getEntriesByType("navigation")[0].responseEnd,

@@ -70,6 +70,9 @@ def spoil(folder):
     assert zero(folder) == WRONG_RAD
 
 
+# power goes while the arm comes in at 0.5 rad/s: it coasts J v^2 / 2 T = 0.05 rad (0.022 kg m2, 0.06 N m), beside 0.03
+# of the zero, 0.03 that the set point leads, 0.01 of free play, and a cycle that a busy host is late
+WITHIN_RAD = 0.14
 END_STOP = {
     "method": "end-stop", "angle_rad": STOP_RAD, "direction": 1, "speed_rad_s": 0.5, "current_a": 0.6,
     "travel_rad": 2.0,
@@ -86,7 +89,7 @@ def test_the_end_stop_gives_the_zero_back_and_the_arm_hangs_down_afterwards(benc
     # the stop gives way, and the teeth are wound up, by what the current presses
     assert zero(tmp_path) == pytest.approx(0.0, abs=0.03)
     assert not is_powered(device)
-    assert device.device.axis.plant.truth().arm_rad == pytest.approx(0.0, abs=0.1)
+    assert device.device.axis.plant.truth().arm_rad == pytest.approx(0.0, abs=WITHIN_RAD)
     # a new zero, and how it was found, ask for no new commissioning move
     assert "has not passed" not in run("run", "steps", "--repeats", "1").output
 
