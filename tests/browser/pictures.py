@@ -28,7 +28,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as store, running_service(Path(store)) as service, browser() as chromium:
         page = open_page(chromium, f"{service.url}/#home", 1100, "light", height=620)
         _home(page, folder / "home.png")
-        page = open_page(chromium, f"{service.url}/#bench", 1100, "light")
+        page = open_page(chromium, f"{service.url}/#bench", 1100, "light", height=840)
         _bench(page, folder / "page.png")
         _study(page, service, folder)
     refuse_large(folder)

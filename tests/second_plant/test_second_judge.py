@@ -54,6 +54,8 @@ def test_what_the_catalogue_calls_a_joints_own_friction_is_no_wrong_name():
     assert textbook.own == ()
     assert {"viscous_power", "pre_sliding", "position_periodic_friction"} <= set(foreign.own)
     assert set(LAWS.values()) <= set(catalogue())
+    # the level is one function of the speed, however it bends: nothing of it is late
+    assert LAWS["film_rad_s"] == LAWS["viscous_power"] == "viscous_power"
 
 
 def test_the_lab_sees_recordings_and_a_rig_without_what_is_hidden():

@@ -97,3 +97,14 @@ def test_hardly_more_than_the_owner_tells_of_is_not_missing(name, shape, possibl
 )  # fmt: skip
 def test_what_is_impossible_about_it_is_told_with_its_number(name, shape, value, held, why, badge):
     assert why_impossible(fitted(name, shape, value, held), name) == (why, badge)
+
+
+@pytest.mark.parametrize(("held", "possible"), [((True, True), False), ((True, False), True), ((False, True), True)])
+def test_a_bound_refuses_an_effect_where_it_holds_all_of_its_coefficients(held, possible):
+    """Dry friction may lag and viscous friction not, or the other way round."""
+    fit = fitted("frictional_lag", (0.3, 0.02))
+    (term,) = fit.terms
+    term.at_bound, term.coefficients = np.array(held), np.where(held, 0.0, 1.0)
+    found = why_impossible(fit, "frictional_lag")
+    assert (found == POSSIBLE) == possible
+    assert possible or found.words == "its dry friction that lags would have to be less than 0 N m"

@@ -104,7 +104,7 @@ const SURE = 6; // d′ from which a name is sure
 
 // the evidence in words, the numbers behind it in brackets
 export function evidence(one) {
-  const chance = one.p_value === null || one.p_value === undefined ? "" : ` Of this effect alone, chance would do as well with p ${chanceIs(one.p_value)}.`;
+  const chance = one.p_value === null || one.p_value === undefined ? "" : ` Of all that was tried, chance would do as well with p ${chanceIs(one.p_value)}.`;
   const lacks = one.why_not.length ? ` Not named: ${one.why_not.join(", ")}.` : "";
   return `${gained(one)}${chance}${lacks}${one.confused_with.length ? ` ${alike(one)}` : ""}`;
 }
