@@ -7,6 +7,7 @@ transmission pulls it back; either way the gear carries less than a rigid one by
 
 import numpy as np
 from numba import njit
+from scipy.fft import irfft, next_fast_len, rfft
 
 from compensator.lab.recordings.recording import FloatArray
 
@@ -14,7 +15,9 @@ from compensator.lab.recordings.recording import FloatArray
 PLAUSIBLE_SHARE = (0.3, 3.0)
 # of free play or compliance: up to so many times what the owner tells, teeth that bounce and data sheets explain it
 TOLD = 2.0
-STIFFEST = 1.5  # resonance times time step, up to which samples can show a swing
+SWUNG_OUT = 4.6  # time constants of a swing's decay, after which a hundredth of it goes on at the beginning
+LONGEST_S = 60.0  # that is waited for: what swings on for longer hardly hangs on its spring
+FADES_S = 0.5  # what drives it, after the last sample
 ABOUT_KNOWN = (0.6, 1.0, 1.6)  # shares of the free play that is told: so little is it known
 
 
@@ -57,7 +60,8 @@ def _ways_in_free_play(parting: FloatArray, high: float, step_s: float) -> Float
 def parting_on_a_spring(parting: FloatArray, resonance_rad_s: float, damping: float, step_s: float) -> FloatArray:
     """Acceleration d'' of a far side on a spring to the motor side, shape (n,): d'' + 2 D w d' + w^2 d = parting.
 
-    Bilinear, the resonance where it belongs; at rest on its spring to begin with.
+    By the transfer function s^2 / (s^2 + 2 D w s + w^2) over the frequencies that samples can hold, so that a spring
+    whose resonance lies beyond them gives as much as it does; at rest on its spring to begin with.
 
     Args:
         parting: acceleration of the way d, if nothing held it, shape (n,).
@@ -65,24 +69,16 @@ def parting_on_a_spring(parting: FloatArray, resonance_rad_s: float, damping: fl
         damping: of that resonance, of critical.
         step_s: between samples.
     """
-    stiffest = STIFFEST / step_s
-    if resonance_rad_s > stiffest:  # far below resonance only the compliance counts, which goes by its square
-        return (stiffest / resonance_rad_s) ** 2 * parting_on_a_spring(parting, stiffest, damping, step_s)
-    warped = 2.0 / step_s * np.tan(0.5 * resonance_rad_s * step_s)
-    doubled = 2.0 / step_s
-    square, lost = doubled**2, 2.0 * damping * warped * doubled
-    first = square + lost + warped**2
-    ahead, twice, once = square / first, 2.0 * (warped**2 - square) / first, (square - lost + warped**2) / first
-    # at rest on its spring under the first parting: as if it had been so for ever
-    return _swung(parting - parting[:1], ahead, twice, once) if len(parting) else parting
-
-
-@njit(cache=True)
-def _swung(driven: FloatArray, ahead: float, twice: float, once: float) -> FloatArray:
-    """y[i] = ahead (x[i] - 2 x[i-1] + x[i-2]) - twice y[i-1] - once y[i-2] of x (n,), from rest."""
-    found, before, earlier = np.empty(len(driven)), 0.0, 0.0
-    for step in range(len(driven)):
-        found[step] = before + ahead * driven[step]
-        before = earlier - 2.0 * ahead * driven[step] - twice * found[step]
-        earlier = ahead * driven[step] - once * found[step]
+    count = len(parting)
+    if count < 2:
+        return np.zeros(count)
+    begun = parting - parting[0]  # at rest on its spring under the first parting: as if it had been so for ever
+    later = np.arange(1, int(FADES_S / step_s) + 2)  # a jump back to that would ring all along
+    fading = (begun[-1] + later * (begun[-1] - begun[-2])) * np.cos(0.5 * np.pi * later / later[-1]) ** 2
+    driven = np.concatenate([begun, fading])
+    swung_out_s = min(SWUNG_OUT / (damping * resonance_rad_s), LONGEST_S)
+    whole = next_fast_len(len(driven) + int(swung_out_s / step_s), real=True)
+    s = 2j * np.pi * np.fft.rfftfreq(whole, step_s)
+    passed = s**2 / (s**2 + 2.0 * damping * resonance_rad_s * s + resonance_rad_s**2)
+    found: FloatArray = irfft(passed * rfft(driven, whole), whole)[:count]
     return found

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.fft import next_fast_len
 
 from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.effects.effect import Motion
@@ -101,16 +102,18 @@ def crossing(m: Motion) -> list[np.ndarray]:
 
 
 def twisted(m: Motion) -> list[np.ndarray]:
-    """A far side on a spring of 2 Hz, 0.05 of critical damping, by the trapezoidal rule with the frequency warped."""
-    w, way, speed, before, found = np.tan(np.pi * 2.0 * 0.05) / 0.025, 0.0, 0.0, 0.0, []
-    for parting in m.parting - m.parting[0]:
-        known = parting - 0.1 * w * (speed + 0.025 * before) - w**2 * (way + 0.05 * speed + 0.05**2 / 4.0 * before)
-        now = known / (1.0 + 0.1 * w * 0.025 + w**2 * 0.05**2 / 4.0)
-        way += 0.05 * speed + 0.05**2 / 4.0 * (before + now)
-        speed += 0.025 * (before + now)
-        before = now
-        found.append(now)
-    return [-0.1 * np.array(found)]
+    """A far side on a spring of 2 Hz, 0.05 of critical damping: its transfer function, frequency by frequency."""
+    begun, w = m.parting - m.parting[0], 2.0 * np.pi * 2.0
+    later = np.arange(1, 12)
+    fading = (begun[-1] + later * (begun[-1] - begun[-2])) * np.cos(0.5 * np.pi * later / 11) ** 2
+    whole = next_fast_len(52 + int(4.6 / (0.05 * w * 0.05)), real=True)
+    driven = np.concatenate([begun, fading, np.zeros(whole - 52)])
+    at = np.arange(whole)
+    s = 2j * np.pi * np.fft.fftfreq(whole, 0.05)
+    waves = np.exp(2j * np.pi * np.outer(at, at) / whole)
+    passed = s**2 / (s**2 + 2.0 * 0.05 * w * s + w**2)
+    passed[whole // 2] = passed[whole // 2].real if whole % 2 == 0 else passed[whole // 2]
+    return [-0.1 * (waves @ (passed * (waves.conj() @ driven))).real[:41] / whole]
 
 
 def smoothed(m: Motion, time_constant_s: float) -> np.ndarray:

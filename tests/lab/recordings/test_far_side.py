@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from compensator.lab.recordings.far_side import parting_in_free_play, parting_on_a_spring
 
@@ -46,10 +47,32 @@ def test_a_stiff_spring_lags_by_the_second_rate_of_change():
 def test_a_far_side_rings_at_its_resonance_and_a_free_one_is_left_behind():
     kicked = np.where(TIME_S < 0.1, 0.0, 1.0)
     found = parting_on_a_spring(kicked, 2.0 * np.pi * 5.0, 0.05, STEP_S)
-    crossings = np.flatnonzero(np.diff(np.sign(found[TIME_S > 0.11])) != 0.0)
+    crossings = np.flatnonzero(np.diff(np.sign(found[TIME_S > 0.12])) != 0.0)
     assert np.diff(crossings)[:6].mean() * STEP_S == pytest.approx(0.1, rel=0.02)
-    free = parting_on_a_spring(np.sin(20.0 * TIME_S), 0.1, 0.05, STEP_S)
-    assert free[1000:] == pytest.approx(np.sin(20.0 * TIME_S[1000:]), abs=0.02)
+    free = parting_on_a_spring(np.sin(20.0 * TIME_S), 0.1, 0.5, STEP_S)
+    assert free[1000:-200] == pytest.approx(np.sin(20.0 * TIME_S[1000:-200]), abs=0.02)
+
+
+def test_what_hardly_hangs_on_its_spring_takes_no_memory():
+    """Beside a load whose inertia is nearly all, the arm's resonance goes to nothing, and its decay takes days."""
+    found = parting_on_a_spring(np.sin(20.0 * TIME_S), 1e-3, 1e-5, STEP_S)
+    assert found[10:-10] == pytest.approx(np.sin(20.0 * TIME_S[10:-10]), abs=0.02)
+
+
+@pytest.mark.parametrize(("hertz", "damping", "step_s"), [(3.0, 0.06, 0.02), (12.0, 0.2, 0.02), (40.0, 0.1, 0.02)])
+def test_it_moves_as_the_equation_says_also_where_samples_cannot_show_its_swing(hertz, damping, step_s):
+    time_s, w = np.arange(0.0, 6.0, step_s), 2.0 * np.pi * hertz
+
+    def parting(t):
+        return np.sin(2.0 * np.pi * 1.3 * t) * np.sin(np.pi * t / 6.0) ** 2
+
+    def rates(t, state):
+        return [state[1], parting(t) - 2.0 * damping * w * state[1] - w**2 * state[0]]
+
+    way, speed = solve_ivp(rates, (0.0, 6.0), [0.0, 0.0], t_eval=time_s, rtol=1e-8, atol=1e-12, max_step=0.002).y
+    wanted = parting(time_s) - 2.0 * damping * w * speed - w**2 * way
+    found = parting_on_a_spring(parting(time_s), w, damping, step_s)
+    assert found[:-3] == pytest.approx(wanted[:-3], abs=5e-3 * np.abs(wanted).max())
 
 
 @pytest.mark.parametrize("damping", [0.06, 0.25])
@@ -61,10 +84,10 @@ def test_a_far_side_dies_away_as_it_is_damped(damping):
     assert decay == pytest.approx(np.pi * damping / np.sqrt(1.0 - damping**2), rel=0.05)
 
 
-@pytest.mark.parametrize("of_rate", [0.2, 0.35, 0.8])
+@pytest.mark.parametrize("of_rate", [0.2, 0.35, 0.8, 3.0])
 def test_a_spring_too_stiff_to_be_seen_swinging_gives_way_by_its_stiffness(of_rate):
     w, resonance = 2.0, 2.0 * np.pi * of_rate / STEP_S
     found = parting_on_a_spring(np.sin(w * TIME_S), resonance, 0.25, STEP_S)
-    settled = TIME_S > 2.0
+    settled = (TIME_S > 2.0) & (TIME_S[-1] - 1.0 > TIME_S)
     share = found[settled] @ np.sin(w * TIME_S[settled]) / np.sum(np.sin(w * TIME_S[settled]) ** 2)
-    assert share == pytest.approx(-((w / resonance) ** 2), rel=0.5)
+    assert share == pytest.approx(-((w / resonance) ** 2), rel=0.01)

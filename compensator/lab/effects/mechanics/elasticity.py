@@ -35,11 +35,12 @@ def swings(shape: Shape) -> bool:
 
 
 def shapes(motion: Motion) -> list[Shape]:
-    """Resonances [Hz] up to 0.4 of the sample rate, dampings, and shares of the arm in the inertia without load.
+    """Resonances [Hz] up to the sample rate, dampings, and shares of the arm in the inertia without load.
 
-    The resonance is that of all inertia without load on the spring, so that of a light arm alone lies higher.
+    The resonance is that of all inertia without load on the spring, so that of a light arm alone lies higher. Beyond
+    half the sample rate the compliance is seen, and with a load more of it.
     """
-    resonances_hz = np.geomspace(3.0, 0.4 / motion.step_s, SCANNED)
+    resonances_hz = np.geomspace(3.0, 1.0 / motion.step_s, SCANNED)
     return [(float(hz), d, share) for hz in resonances_hz for d in DAMPINGS for share in arm_shares(motion.facts)]
 
 
