@@ -19,7 +19,8 @@ from compensator.lab.recordings.regimes import Regime
 from compensator.lab.rows.dataset import Dataset, RowChoice
 
 MOST_PASSES = 20  # each shrinks the change of the predicted load several times
-MOST_SEARCHES = 3  # of shapes, where one of them says how the position is misread
+MOST_SEARCHES = 5  # of shapes, where what they explain changes the load that they are of, or where the joint is
+SETTLED_SHAPE = 0.01  # of its values, by which a search ends where another one did
 SETTLED_SHARE = 1e-5  # of the prediction, that may be left to go: a fiftieth of the least that is worth a name
 
 
@@ -114,14 +115,15 @@ def _fit(
         fit = _settle(fit_linear(dataset, effects, rows, shapes, weight), effects, shapes, weight)
         if all(effect.name in kept for effect in effects if effect.shape_names):
             return fit
-    for _ in range(MOST_SEARCHES):
+    for number in range(MOST_SEARCHES):
         before, own = fit.shapes, with_own_prediction(fit.dataset, fit.terms)
-        shapes = find_shapes(own, effects, rows, kept, weight * own.steadiness, before)
+        shapes = find_shapes(own, effects, rows, kept, weight * own.steadiness, before, known=number > 0)
         if shapes == before and not misread:
             break
         fit = _settle(fit, effects, shapes, weight)
-        if not any(effect.misreads is not None and shapes[effect.name] != before[effect.name] for effect in effects):
-            break  # else all other shapes were found where the joint is not
+        again = (effect for effect in effects if effect.misreads is not None or effect.builds_on is not None)
+        if all(np.allclose(shapes.get(one.name, ()), before.get(one.name, ()), SETTLED_SHAPE, 0.0) for one in again):
+            break  # else shapes were found where the joint is not, or beside a load that it has not
     return fit
 
 

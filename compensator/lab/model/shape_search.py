@@ -36,6 +36,7 @@ def find_shapes(
     kept: Mapping[str, Shape],
     weight: FloatArray,
     start: Mapping[str, Shape] | None = None,
+    known: bool = False,
 ) -> dict[str, Shape]:
     """The shape of every effect that has one, each searched with the others held; twice, where there are others.
 
@@ -46,6 +47,7 @@ def find_shapes(
         kept: shapes that are not searched but taken as they are.
         weight: of each row, shape (N,).
         start: shapes that the others have until they are searched; else the middle of their grids.
+        known: these were found beside nearly the same prediction; what is smooth is looked for around them alone.
     """
     shapes = {**first_shapes(dataset, effects), **(start or {}), **kept}
     searched = [effect for effect in effects if effect.shape_names and effect.name not in kept]
@@ -54,7 +56,8 @@ def find_shapes(
             others = [dataset.columns(other, shapes.get(other.name, ())) for other in effects if other is not effect]
             fixed = np.concatenate(others, axis=1)[rows] if others else np.empty((int(rows.sum()), 0))
             search = _Search(dataset, effect, rows, fixed, weight[rows])
-            best = search.grow() if effect.grows else search.scan()
+            near = shapes[effect.name] if known and effect.smooth_shape else None
+            best = near or (search.grow() if effect.grows else search.scan())
             shapes[effect.name] = search.refine(best) if effect.smooth_shape else best
     return shapes
 

@@ -1,16 +1,19 @@
 """Parameters of a known law come back within what the noise allows."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.errors import UnknownEffectError, UnusableDataError
-from compensator.lab.model.fit import fit_linear, fit_model
+from compensator.lab.model.fit import fit_effects, fit_linear, fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.intervals import estimates
 from compensator.lab.model.prediction import effort_per_torque, with_own_prediction
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
+from tests.lab.far_side import ARM_KG_M2, twisting
 from tests.lab.synthetic import FACTS, G_M_S2, Bench, Joint, plans, recordings
 
 DEFAULT = default_effects(FACTS)
@@ -163,3 +166,12 @@ def test_two_loads_alone_still_part_arm_and_load():
     dataset = make_dataset(recordings(bench=QUIET, trials=plans(loads_kg=(0.0, 0.3))), FACTS, Processing(8.0))
     fit = fit_model(dataset, DEFAULT)
     assert (value(fit, "gravity"), value(fit, "gravity", 1)) == pytest.approx((0.25, 1.0), rel=0.01)
+
+
+def test_a_shape_settles_with_the_load_that_it_is_of():
+    """The load of a model without the spring is not that of the arm: beside it, the spring seems twice as quick."""
+    made = recordings(Joint(extra=twisting), trials=plans((0.0, 0.25)), seed=4)
+    told = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2)
+    fit = fit_model(make_dataset(made, told, Processing()), default_effects(told))
+    found = fit_effects(fit, [*fit.names, "elasticity"])
+    assert found.shapes["elasticity"][0] == pytest.approx(50.0 / (2.0 * np.pi), rel=0.05)
