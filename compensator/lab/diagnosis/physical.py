@@ -10,6 +10,7 @@ from compensator.lab.model.linear import Term
 from compensator.lab.rows.dataset import Dataset
 
 TOLD = "known from the rig"
+VISCOUS = "viscous"
 END_OF_SCAN, SIGN, SIZE, SMALL = "limit of the scan", "unphysical sign", "unphysical size", "too small"
 ROUNDING = 1e-6  # of a shape that was looked for by its logarithm
 
@@ -41,9 +42,16 @@ def why_impossible(fit: Fit, name: str) -> Impossible:
     least = effect.least_of_friction * fit.dry_friction
     if least > 0.0 and np.all(term.coefficients < least):
         return Impossible(f"it would be under {effect.least_of_friction:.0%} of dry friction", SMALL)
-    if effect.holds is not None and not effect.holds(term.shape):
+    if effect.holds is not None and not effect.holds(term.shape, _of_friction(fit, term)):
         return Impossible("of this shape it is something else", END_OF_SCAN)
     return POSSIBLE
+
+
+def _of_friction(fit: Fit, term: Term) -> float:
+    """What a term's dry and viscous parts come to at the fast speeds, over all friction of the model there."""
+    fast = fit.dataset.trials[0].motion.fast
+    there = fit.dry_friction + fast * sum(float(one.coefficients[0]) for one in fit.terms if one.effect.name == VISCOUS)
+    return float(np.polynomial.polynomial.polyval(fast, term.coefficients)) / there if there > 0.0 else np.inf
 
 
 def _held(dataset: Dataset, term: Term) -> Impossible | None:

@@ -319,7 +319,8 @@ class Effect:
             is found where no gear ratio tells which these are; None: it has no such shape.
         told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
         searched: shape -> whether a search for the best one goes there; a scan may, to see what fits better beyond.
-        holds: shape that it takes in a model -> whether that is this effect still; None: any is.
+        holds: (shape that it takes in a model, what it comes to over all friction there) -> whether that is this effect
+            still; None: any is.
         offered_by: package that it comes from, with its version; "" of ours.
         ends_within_scan: so many of the shape's first values end within the scan: what fits best at an upper end goes
             on beyond it, and is something else.
@@ -355,7 +356,7 @@ class Effect:
     discrepancy: Callable[[Motion, Shape], FloatArray] | None = None
     least_of_friction: float = 0.0
     searched: Callable[[Shape], bool] = _anywhere
-    holds: Callable[[Shape], bool] | None = None
+    holds: Callable[[Shape, float], bool] | None = None
     ends_within_scan: int = 0
     shape_over: Callable[[Sequence[Motion]], Shape] | None = None
     provisional: bool = False

@@ -9,17 +9,12 @@ from compensator.lab.recordings.recording import FloatArray
 # 1 is all of it; beside a model that was fitted to smoothed effort the first step is several times too long, and a
 # small share of a long time constant is what any chain leaves of a delay to second order
 LEAST_SHARE, MOST_SHARE = 0.5, 10.0
-SHORTEST_S, LONGEST_S = 0.008, 0.5  # a shorter one is a delay and no more; a longer one would show no motion
+SHORTEST_S, LONGEST_S = 0.008, 0.5  # a shorter one is a delay to second order; a longer one would show no motion
 
 
 def shapes(_: Motion) -> list[Shape]:
     """Time constants, some four to a decade."""
     return [(float(time_s),) for time_s in np.geomspace(SHORTEST_S, LONGEST_S, 8)]
-
-
-def is_none_shorter(shape: Shape) -> bool:
-    """Whether the time constant is none at the scan's short end, where a delay to second order would end as well."""
-    return shape[0] > 1.01 * SHORTEST_S
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
@@ -55,5 +50,5 @@ EFFECT = Effect(
     pipeline=True,
     efforts=("current", "torque"),  # what a drive measures; a duty or a voltage is what it was told
     standing_in=frozenset({"jerk", "sign_rate"}),
-    holds=is_none_shorter,
+    ends_within_scan=1,
 )

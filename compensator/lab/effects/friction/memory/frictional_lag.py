@@ -34,9 +34,13 @@ def _late(values: FloatArray, fade: float) -> FloatArray:
     return late
 
 
-def holds(shape: Shape) -> bool:
-    """Whether the lag is more than the measuring chain makes by itself."""
-    return shape[1] > LIKE_THE_CHAIN_S
+def holds(shape: Shape, of_friction: float) -> bool:
+    """Whether the lag is more than the measuring chain makes by itself.
+
+    Rows tell how much friction lags times how long, where the lag is short: a short lag of more friction than there is
+    is a longer one of all of it, or none at all.
+    """
+    return LIKE_THE_CHAIN_S < shape[1] * max(of_friction, 1.0) <= LAGS_S[-1]
 
 
 EFFECT = Effect(
