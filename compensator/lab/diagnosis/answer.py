@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from compensator.lab.diagnosis.confirmation import LEAST_GAIN_OF_CHAIN
 from compensator.lab.diagnosis.diagnosis import Candidate, Verdict
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.model.fitted import Fit
@@ -33,3 +34,8 @@ class Answer:
     def explained(self) -> Fit | None:
         """The model with the effect that is named, where it shows in motion."""
         return self.candidates[0].explained if self.verdict == "missing" else None
+
+    @property
+    def is_slight(self) -> bool:
+        """Whether what is named lowers the error by so little as what every measuring chain bends."""
+        return self.verdict == "missing" and self.candidates[0].gain.value < LEAST_GAIN_OF_CHAIN

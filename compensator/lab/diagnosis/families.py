@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
 from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import FORMULA_SHARE, best_shapes, examine, explains
+from compensator.lab.diagnosis.examination import FORMULA_SHARE, best_shapes, examine
 from compensator.lab.diagnosis.remaining import what_remains, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
 from compensator.lab.diagnosis.wording import (
@@ -14,12 +14,16 @@ from compensator.lab.diagnosis.wording import (
     partly_in_words,
     unknown_in_words,
 )
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.fit import with_columns
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.gain import predicts_better
+from compensator.lab.model.validation import held_out
+from compensator.lab.screening.base import Block
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Evidence, Screening, among_all, kept_evidence
+from compensator.lab.screening.evidence import Evidence, Screening, among_all
 
 FEWEST_SHOWN = 2
-NEARLY_ALL = 0.9  # of the evidence of what explains most
 
 
 def answer_of(fit: Fit, gathered: Candidates, named: Screening, generic: Screening | None) -> Answer:
@@ -82,34 +86,44 @@ class _Family:
         """The answer that a candidate is; else what speaks against it beside its own numbers."""
         if not is_confirmed(candidate):
             return ""
-        assert candidate.evidence is not None
         assert candidate.explained is not None
-        found = next(item for item in self.shapes if item.block.name == candidate.effect.name)
-        near_reversals = self.gathered.show_in != "sliding"
-        if near_reversals and candidate.evidence.noncentrality < FORMULA_SHARE * found.noncentrality:
-            return "as it can be, it explains little of what a scan of it does"
-        if shadow_of := self._shadow_of(candidate.evidence):
-            return f"explains little beside {shadow_of}, which cannot be it"
+        if shadow_of := self._shadow_of(candidate):
+            return shadow_of
         others = [one for one in self.examined if one is not candidate]
         notes = what_remains(candidate.explained, self.gathered, candidate.effect.name)
         sentence, p_value = missing_in_words(candidate), candidate.p_value
         sentence += partly_in_words(candidate) if notes else ""
         return Answer("missing", sentence, p_value, [candidate, *others], None, notes, bool(notes), self.gathered)
 
-    def _shadow_of(self, one: Evidence) -> str:
-        """What explains more, though it cannot be the effect, and explains what this one does; empty without.
+    def _shadow_of(self, candidate: Candidate) -> str:
+        """Why it is but the shadow of what explains much more, though that cannot be it; empty where it is none.
 
-        Near reversals every effect has a little of what any other explains: with less than nearly all of the evidence
-        it has to keep half of its own beside the other.
+        Near reversals that may be the effect itself as it was scanned, with a size or a shape that it cannot have.
         """
-        others = [item for item in self.shapes if item.block.name != one.block.name]
-        most = max(others, key=lambda item: item.noncentrality, default=one)
-        share = one.noncentrality / most.noncentrality if most.noncentrality > 0.0 else 1.0
-        if share >= (FORMULA_SHARE if self.gathered.show_in == "sliding" else NEARLY_ALL):
+        assert candidate.evidence is not None
+        name, sliding = candidate.effect.name, self.gathered.show_in == "sliding"
+        others = [item for item in self.shapes if not (sliding and item.block.name == name)]
+        most = max(others, key=lambda item: item.noncentrality, default=candidate.evidence)
+        if candidate.evidence.noncentrality >= FORMULA_SHARE * most.noncentrality:
             return ""
-        beside = self.gathered.with_block(most.block).bases
-        little = share < FORMULA_SHARE or explains(kept_evidence(beside, [one.block]), one)
-        return most.block.name if little else ""
+        own = most.block.name == name
+        if (own or sliding) and self._predicts_better(candidate, most.block):
+            return ""
+        beside = "of what a scan of it does" if own else f"beside {most.block.name}, which cannot be it"
+        return f"{'as it can be, it ' * own}explains little {beside}"
+
+    def _predicts_better(self, candidate: Candidate, block: Block) -> bool:
+        """Whether it predicts other trials better, for sure, than another one does with coefficients of any sign.
+
+        Of steady sliding that decides; near reversals every joint leaves something that any effect predicts, and it
+        decides between sizes and shapes of one effect.
+        """
+        assert candidate.explained is not None
+        fit, rows = self.gathered.fit, self.gathered.show_in
+        columns = fit.dataset.unchecked_columns(effect_named(block.name), [block.shape])[0]
+        return predicts_better(
+            *(held_out(one, rows) for one in (candidate.explained, with_columns(fit, block.name, columns)))
+        )
 
     def nothing(self, generic: Screening | None) -> Answer:
         """That no effect is confirmed, and what is left all the same, where free curves are asked for."""

@@ -58,8 +58,9 @@ class FourFamilies:
 
     @property
     def in_order(self) -> list[Answer]:
-        """Those that could be judged, as one comes before the other."""
-        return [one for one in (self.steady, self.memory, self.rest, self.chain) if one is not None]
+        """Those that could be judged, in order; last a name for the little near reversals that anything leaves."""
+        found = [one for one in (self.steady, self.memory, self.rest, self.chain) if one is not None]
+        return sorted(found, key=lambda one: (one is self.memory) * one.is_slight)
 
     def first(self) -> Answer:
         """The answer: that of the first family with one, but for a name of a later family that goes before it."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensator.lab.diagnosis.confirmation import helpful_curve
+from compensator.lab.diagnosis.confirmation import helpful_curve, is_confirmed, is_helpful
 from compensator.lab.diagnosis.diagnosis import Candidate, Diagnosis, Picture
 from compensator.lab.diagnosis.examination import FORMULA_SHARE
 from compensator.lab.effects.effect import Effect
@@ -12,36 +12,37 @@ from compensator.lab.effects.free_curve import FORCE, name_of, way_of
 from compensator.lab.errors import NotApplicableError, UnusableDataError
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.gain import Gain, held_out_gain, predicts_better
+from compensator.lab.model.gain import Gain, held_out_gain
+from compensator.lab.model.held_out_error import HeldOut
 from compensator.lab.model.validation import held_out
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.rows.picture import binned_mean
-from compensator.lab.screening.base import HYSTERESIS_DRIVER
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Evidence, Screening
 
 
 def unfollowed(gathered: Candidates, generic: Screening, examined: list[Candidate]) -> Evidence | None:
-    """The helpful curve that no formula follows; None where all are followed.
+    """The helpful curve that no formula follows; None where there is none.
 
-    Hysteresis is one thing, whatever imitates it: it is followed by what predicts as well.
+    A formula that is confirmed follows it where it has most of the evidence, or the curve does not help beside it.
 
     Args:
         gathered: the model, and what it may be missing.
         generic: evidence for free curves.
-        examined: candidates, best first.
+        examined: candidates.
     """
     found = helpful_curve(gathered, generic)
     if found is None:
         return None
     curve, errors = found
-    evidence = examined[0].evidence.noncentrality if examined[0].evidence is not None else 0.0
-    followed = examined[0].physical and evidence >= FORMULA_SHARE * curve.noncentrality
-    if not followed:
-        return curve
-    models = [one.explained for one in examined if one.physical and one.explained is not None]
-    hysteresis = curve.block.name == HYSTERESIS_DRIVER
-    return curve if hysteresis and all(predicts_better(errors, held_out(model)) for model in models) else None
+    return None if any(_follows(one, curve, errors) for one in examined) else curve
+
+
+def _follows(one: Candidate, curve: Evidence, errors: HeldOut) -> bool:
+    if not is_confirmed(one) or one.evidence is None or one.explained is None:
+        return False
+    most = one.evidence.noncentrality >= FORMULA_SHARE * curve.noncentrality
+    return most or not is_helpful(held_out(one.explained), errors)
 
 
 @dataclass(frozen=True)

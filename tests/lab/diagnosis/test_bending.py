@@ -85,11 +85,10 @@ def test_what_is_small_bends_where_no_luck_brings_it_and_it_helps_for_sure(monke
     assert not bends(fit)
 
 
-def test_a_formula_that_imitates_it_is_its_name_unless_the_curve_predicts_better_for_sure(bent, monkeypatch):
+def test_a_formula_that_is_confirmed_is_its_name_unless_the_curve_helps_beside_it(bent, monkeypatch):
+    monkeypatch.setattr(unfollowed, "is_confirmed", lambda _: True)
     assert bends(bent)
-    monkeypatch.setattr(unfollowed, "FORMULA_SHARE", 0.0)
-    assert bends(bent)
-    monkeypatch.setattr(unfollowed, "predicts_better", lambda *_: False)
+    monkeypatch.setattr(unfollowed, "is_helpful", lambda *_: False)
     assert not bends(bent)
 
 

@@ -37,6 +37,9 @@ def test_score_luck_and_gain_must_all_speak_for_it(score, p_value, gain, low, co
         ({"p_value": 0.02}, ["may be luck"]),
         ({"before": 0.0006}, ["explains under 0.05% of the effort"]),
         ({"gain": Gain(0.004, 0.001, 0.01)}, ["gain under 0.5%"]),
+        ({"gain": Gain(0.019, 0.01, 0.03), "effect": effect_named("backlash")}, ["gain under 2.0%"]),
+        ({"gain": Gain(0.021, 0.01, 0.03), "effect": effect_named("backlash")}, []),
+        ({"gain": Gain(0.049, 0.01, 0.06), "effect": effect_named("measurement_delay")}, ["gain under 5.0%"]),
         ({"gain": Gain(0.2, -0.01, 0.4)}, ["gain not sure"]),
         (
             {"impossible": "it would be -2, allowed 0 to 1", "p_value": 0.02},

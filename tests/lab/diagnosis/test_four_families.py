@@ -11,6 +11,7 @@ from compensator.lab.diagnosis import four_families
 from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.four_families import FourFamilies
 from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.gain import Gain
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.evidence import screen
@@ -18,16 +19,19 @@ from compensator.lab.screening.evidence import screen
 NOTHING = Answer("nothing", "", 1.0, [], None, [])
 
 
-def named(name: str, evidence: float = 100.0) -> Answer:
+SURE = Gain(0.3, 0.2, 0.4)
+
+
+def named(name: str, evidence: float = 100.0, gain: Gain = SURE) -> Answer:
     """An answer with a name, as far as other families look at it."""
     said = SimpleNamespace(noncentrality=evidence)
-    candidate: Any = SimpleNamespace(effect=effect_named(name), explained=model_of(name), evidence=said)
+    candidate: Any = SimpleNamespace(effect=effect_named(name), explained=model_of(name), evidence=said, gain=gain)
     return Answer("missing", "", 0.001, [candidate], None, [])
 
 
 def unseen(name: str) -> Answer:
     """One whose effect does not show in motion."""
-    candidate: Any = SimpleNamespace(effect=effect_named(name), explained=None, evidence=None)
+    candidate: Any = SimpleNamespace(effect=effect_named(name), explained=None, evidence=None, gain=SURE)
     return Answer("missing", "", 0.001, [candidate], None, [])
 
 
@@ -40,6 +44,7 @@ BRISTLES = named("pre_sliding", 110.0)
 ENCODER, LATER = named("encoder_eccentricity", 90.0), named("effort_filter", 200.0)
 CURVE = replace(NOTHING, verdict="unknown-effect", driver="time")
 UNSEEN = unseen("rate_dependent_breakaway")
+LITTLE = named("frictional_lag", gain=Gain(0.04, 0.03, 0.05))
 
 
 @pytest.mark.parametrize(
@@ -64,6 +69,9 @@ UNSEEN = unseen("rate_dependent_breakaway")
         (NOTHING, NOTHING, DWELL, LATER, {("effort_filter", "dwell_strengthening"): "moving"}, "", DWELL),
         (COGGING, NOTHING, DWELL, NOTHING, {("dwell_strengthening", "cogging"): "moving"}, "cogging", DWELL),
         (NOTHING, NOTHING, UNSEEN, ENCODER, {}, "", UNSEEN),
+        (NOTHING, LITTLE, None, NOTHING, {}, "", LITTLE),
+        (NOTHING, LITTLE, DWELL, NOTHING, {}, "", DWELL),  # whatever is missing leaves a little near reversals
+        (NOTHING, LITTLE, None, ENCODER, {}, "", ENCODER),
     ],
 )
 def test_a_name_is_first_that_predicts_better_and_has_more_evidence_or_leaves_none(

@@ -1,11 +1,12 @@
 """A formula is held against a curve with what it leaves open; what is no such formula is unknown."""
 
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis import confirmation
+from compensator.lab.diagnosis import confirmation, unfollowed
 from compensator.lab.diagnosis.confirmation import LEAST_GAIN_OF_CHAIN
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.search import search
@@ -60,3 +61,22 @@ def test_a_curve_is_of_use_on_other_trials_for_sure_or_no_unknown_effect(monkeyp
     fit = fit_to(lambda x: 0.05 * np.exp(-(((x.q - 0.4) / 0.08) ** 2)) * np.sign(x.v))
     monkeypatch.setattr(confirmation, "held_out_gain", lambda *_: Gain(gain * LEAST_GAIN_OF_CHAIN, low, 0.1))
     assert (diagnose(fit).verdict == "unknown-effect") == unknown
+
+
+@pytest.mark.parametrize(
+    ("confirmed", "share", "helps", "follows"),
+    [
+        (True, 0.7, True, True),
+        (True, 0.5, True, False),
+        (True, 0.5, False, True),
+        (False, 0.7, False, False),
+    ],
+)
+def test_a_formula_follows_a_curve_by_its_evidence_or_by_what_is_left_to_the_curve(
+    monkeypatch, confirmed, share, helps, follows
+):
+    monkeypatch.setattr(unfollowed, "is_confirmed", lambda _: confirmed)
+    monkeypatch.setattr(unfollowed, "held_out", lambda _: None)
+    monkeypatch.setattr(unfollowed, "is_helpful", lambda *_: helps)
+    one = SimpleNamespace(evidence=SimpleNamespace(noncentrality=share), explained=object())
+    assert unfollowed._follows(one, SimpleNamespace(noncentrality=1.0), None) == follows

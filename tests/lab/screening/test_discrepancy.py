@@ -47,12 +47,16 @@ def meshed(x: Truth) -> np.ndarray:
     return 0.3 * np.abs(load + 0.08 * np.sign(x.v)) * np.sign(x.v)
 
 
-@pytest.mark.parametrize(
-    ("law", "effects"), [(grown, ("weight_friction", "weight_stribeck")), (meshed, ("load_friction",))]
-)
-def test_what_the_formula_of_a_complete_model_misses_is_no_effect(law, effects):
-    found = diagnose(fitted(Joint(static_excess=0.08, extra=law), *effects))
+def test_what_the_formula_of_a_complete_model_misses_is_no_effect():
+    found = diagnose(fitted(Joint(static_excess=0.08, extra=grown), "weight_friction", "weight_stribeck"))
     assert found.verdict != "missing", found.sentence
+
+
+def test_teeth_that_transmit_friction_too_rub_by_quadrant():
+    """0.3 |load + f sgn v| is 0.3 |load|, and 0.3 f more where the motor drives and less where it holds back."""
+    found = diagnose(fitted(Joint(static_excess=0.08, extra=meshed), "load_friction"))
+    assert found.classes[0][0] == "coulomb_quadrant", found.sentence
+    assert found.candidates[0].gain.low > 0.3
 
 
 def heavier(x: Truth) -> np.ndarray:
