@@ -79,3 +79,12 @@ def test_one_item_is_judged_and_its_result_survives_a_file():
     assert 0.2 < result.standings[0].ratio < 2.0
     assert Result.from_json(json.loads(json.dumps(result.to_json()))) == result
     assert SECOND_FAMILIES[item.family].ratios == (0.3, 1.2)
+
+
+def test_what_the_channel_of_another_mechanism_does_not_show_has_no_r():
+    """A fault of the current's sensor is in no voltage, which a hot winding needs."""
+    joint = second_joint(5, ("hot_winding", "sensor_gain"), (0.6, 0.5), "textbook")
+
+    assert joint.drawn.sensors.effort in ("duty", "estimate")
+    assert joint.evidences[0].ratio == pytest.approx(0.6, rel=0.35)
+    assert joint.evidences[1].ratio < 0.01

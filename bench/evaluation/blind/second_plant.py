@@ -104,23 +104,28 @@ def second_joint(seed: int, names: tuple[str, ...], ratios: tuple[float, ...], l
     Args:
         seed: of all that is drawn.
         names: of mechanisms.
-        ratios: the r that each should have alone.
+        ratios: the r that each should have alone, as the joint is recorded for all of them.
         level: of the friction laws.
     """
-    alone = [_of_ratio(seed, name, ratio, level) for name, ratio in zip(names, ratios, strict=True)]
+    alone = [_of_ratio(seed, names, name, ratio, level) for name, ratio in zip(names, ratios, strict=True)]
     drawn = draw_joint(seed, names, [size for size, _ in alone], level)
     plain = replace(drawn, hidden=())
     laws = laws_ratio(plain, floor_of(plain, "")) if level == "foreign" else 0.0
     return SecondJoint(drawn, tuple(found for _, found in alone), laws)
 
 
-def _of_ratio(seed: int, name: str, wanted: float, level: Level) -> tuple[float, Evidence]:
-    """The size by which a mechanism alone stands out by an r, or the nearest that it can have; and its evidence."""
+def _of_ratio(seed: int, names: tuple[str, ...], name: str, wanted: float, level: Level) -> tuple[float, Evidence]:
+    """The size by which one of the mechanisms stands out alone by an r, or the nearest that it can have; its evidence.
+
+    What another one needs to be there at all may keep this one out of the recordings, as a voltage does a fault of the
+    current's sensor.
+    """
     most, size, floor = MECHANISMS[name].most, FIRST_SIZE, None
     tried: list[tuple[float, float]] = []
     found: list[tuple[float, Evidence]] = []
     for _ in range(SCALINGS):
-        drawn = draw_joint(seed, (name,), (size,), level)
+        whole = draw_joint(seed, names, [size] * len(names), level)
+        drawn = replace(whole, hidden=tuple(one for one in whole.hidden if one.name == name))
         floor = floor or floor_of(drawn, name)
         found.append((size, evidence(drawn, name, floor)))
         off = log(max(found[-1][1].ratio, LEAST_RATIO) / wanted)
