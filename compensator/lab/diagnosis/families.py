@@ -69,7 +69,7 @@ class _Family:
             return None
         driver, p_value = curve.block.name, among_all(generic.p_value)
         for index, one in enumerate(self.examined):
-            self.examined[index] = replace(one, refused=f"explains much less than a curve over {driver}")
+            self.examined[index] = replace(one, refused=f"does not follow the curve over {driver}")
         sentence = unknown_in_words(first, driver, p_value)
         return Answer("unknown-effect", sentence, p_value, self.examined, driver, [], remains=True)
 

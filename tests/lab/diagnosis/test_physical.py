@@ -41,6 +41,9 @@ def fitted(name: str, shape: tuple[float, ...], value: float = 1.0, held: bool =
         ("elasticity", (100.0, 0.3, 0.4), True),
         ("elasticity", (100.0 * (1.0 - 1e-15), 0.3, 0.4), True),  # a logarithm and back may make that of 100
         ("elasticity", (8.0, 0.7, 0.4), True),  # nothing swings
+        ("effort_filter", (0.008,), True),  # a delay to second order
+        ("effort_filter", (0.02,), False),
+        ("effort_filter", (0.5,), True),
         ("pre_sliding", (2e-4,), True),
         ("pre_sliding", (5e-4,), False),
         ("pre_sliding", (0.2,), True),

@@ -51,7 +51,7 @@ def test_friction_of_the_load_of_another_form_is_unknown(friction):
     assert found.verdict == "unknown-effect", found.sentence
     assert found.driver == "load against motion"
     steady = [one for one in found.candidates if one.rows == "sliding" and not one.effect.pipeline]
-    assert all("explains much less than a curve over load" in one.refused for one in steady)
+    assert all("does not follow the curve over load" in one.refused for one in steady)
     # friction that goes by the weight of one flank goes round twice a turn, too: that formula comes as near
     assert "load_friction" in [one.effect.name for one in found.candidates]
 
