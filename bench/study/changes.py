@@ -77,17 +77,12 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     before, after = held_out(old, rows), held_out(new, rows)
     gain = held_out_gain(before, after)
     starts = held_out_both(old, new) if any(one.breakaway for one in changed) else None
-    only_there = all(one.rows == "breakaway" for one in changed)
     impossible = next((found for name in added if (found := why_impossible(fit, name).words)), "")
     error = "held-out error" if rows == material.dataset.rows else "held-out error, near reversals too,"
-    sentence = "" if only_there else _sentence(done, effect, error, before.relative, after.relative, gain, impossible)
+    sentence = _sentence(done, effect, error, before.relative, after.relative, gain, impossible)
     if starts is not None:
         error = "held-out error of the breakaway effort"
         sentence += " " + _sentence(done, effect, error, starts[0].relative, starts[1].relative, held_out_gain(*starts))
-    elif only_there:
-        sentence = (
-            f"{done} {effect} changes nothing but the effort of breaking away, and too few starts from rest show that."
-        )
     result = result_of(fit, held_out(fit))
     model_id = store.add_model(material.study_id, parent.id, effects, stored(result))
     return Changed(

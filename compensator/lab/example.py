@@ -6,13 +6,11 @@ fitted with. It is to be looked at; nothing is concluded from it.
 
 from dataclasses import dataclass
 from functools import cache
-from itertools import repeat
 
 import numpy as np
 
-from compensator.lab.at_rest.breakaway_rows import at_rest_motion
 from compensator.lab.effects.catalogue import default_effects, effect_named
-from compensator.lab.effects.effect import Effect, Onset, Parameter
+from compensator.lab.effects.effect import Effect, Parameter
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.prediction import with_own_prediction
@@ -31,9 +29,7 @@ TORQUE_PER_CURRENT_N_M_A = 1.0
 RESTS_S, RAMP_S = ((2.6, 3.0), (6.0, 7.2)), 0.05  # from, to; how quickly it stops
 SENSED = "load_torque_n_m"
 SMOOTH_RAD_S = 0.02  # of the example's sign of speed
-STARTS, RATES_N_M_S, STARTS_REST_S = 24, (0.02, 2.0), (0.2, 0.2, 1.0, 1.0, 5.0, 5.0)
 SWUNG = "A joint swings to and fro and rests twice."
-PUSHED = "A joint that hangs down is pushed to and fro from rest, each time more quickly: each point is a start."
 
 
 @dataclass(frozen=True)
@@ -81,8 +77,6 @@ def example_of(name: str) -> Example:
     """
     effect = effect_named(name)
     quantity: EffortQuantity = "torque" if not effect.efforts or "torque" in effect.efforts else "current_estimate"
-    if effect.rows == "breakaway":
-        return _of_starts(effect, quantity)
     dataset = _joint(quantity, SENSED in effect.channels)
     shapes = effect.shapes(dataset.trials[0].motion)
     added = _added(dataset.columns(effect, shapes[len(shapes) // 2]), effect.parameters, dataset.effort)
@@ -102,28 +96,6 @@ def _added(columns: FloatArray, parameters: tuple[Parameter, ...], effort: Float
     raw: FloatArray = columns @ np.array([sign / (1.0 + index) for index, sign in enumerate(signs)])
     size = float(np.sqrt(np.mean(raw**2)))
     return raw * (SHARE * float(np.sqrt(np.mean(effort**2))) / size if size > 0.0 else 0.0)
-
-
-def _of_starts(effect: Effect, quantity: EffortQuantity) -> Example:
-    """Of an effect that nothing but breakaway shows."""
-    share = effect.breakaway
-    assert share is not None, f"{effect.name} counts breakaway rows and has no breakaway columns"
-    fit, dataset = _fitted(quantity), _joint(quantity)
-    rates, direction = np.geomspace(*RATES_N_M_S, STARTS), np.resize([1.0, -1.0], STARTS)
-    rest_s = np.resize(STARTS_REST_S, STARTS)
-    time_s = np.cumsum(rest_s + COULOMB_N_M / rates)
-    index, hanging = np.zeros(STARTS, dtype=np.int64), np.zeros(STARTS)
-    onsets = [
-        Onset(at_rest_motion(fit, one.motion, index, hanging, direction), rest_s, rates) for one in dataset.trials
-    ]
-    shapes = share.shapes(onsets[0])
-    columns = [share.columns(onset, shapes[len(shapes) // 2]).T for onset in onsets]
-    without = [onset.motion.load_effort + direction * COULOMB_N_M / TORQUE_PER_CURRENT_N_M_A for onset in onsets]
-    added = np.split(_added(np.concatenate(columns), share.parameters, np.concatenate(without)), len(onsets))
-    values = {"rest": rest_s, "effort_rate": rates}[share.driver]
-    trials = tuple(ExampleTrial(*one) for one in zip(LOADS_KG, repeat(time_s), repeat(values), without, added))
-    driver, unit = DRIVERS[share.driver], dataset.effort_definition.unit
-    return Example(effect, PUSHED, unit, driver.title, driver.unit_in(unit, dataset.facts), trials)
 
 
 @cache

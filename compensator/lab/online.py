@@ -106,7 +106,7 @@ class OnlineFriction:
 
 def works_online(effect: Effect) -> bool:
     """Whether an effect is computed from the motion of the moment."""
-    memory = effect.rows == "moving" or effect.builds_on == "effort" or effect.driver == "session_time"
+    memory = effect.rows == "moving" or effect.builds_on == "effort" or effect.driver in ("session_time", "start_rate")
     return not (memory or effect.pipeline or effect.name == "inertia")
 
 

@@ -26,15 +26,6 @@ def test_viscous_asymmetry_rises_with_speed_either_way():
         assert (one.effect[fast] > 0).all()
 
 
-def test_a_joint_breaks_away_more_easily_the_quicker_it_is_pushed():
-    found = example_of("rate_dependent_breakaway")
-    assert "from rest" in found.motion
-    for one in found.trials:
-        assert (np.diff(one.driver) > 0.0).all()
-        assert (np.diff(np.abs(one.effect)) > 0.0).all()
-        assert (one.effect * one.without < 0.0).all()
-
-
 def test_an_unknown_effect_is_refused():
     with pytest.raises(UnknownEffectError):
         example_of("moonlight")

@@ -96,14 +96,14 @@ def test_a_shaft_that_turns_on_has_no_spring(store: Store) -> None:
 
 
 def test_what_a_diagnosis_does_not_judge_cannot_be_judged_before_it(store: Store) -> None:
-    """Both count the rows near reversals, and the starts from rest, by the same rule."""
+    """Both count the rows near reversals by the same rule."""
     found = shaft(store, (1.0, -1.0))
     last = diagnose(store, found.study_id)
     not_judged = {str(one.values["effect"]): one.text for one in last.findings if one.code == "not-judged"}
     by_name = {one.effect: one for one in found.effects}
     assert "rows lie near one, wanted 40" in not_judged["backlash"]
     assert not set(not_judged) & {one.effect for one in found.effects if one.standing == "judgeable"}
-    for name in ("backlash", "elasticity", "pre_sliding", "rate_dependent_breakaway"):
+    for name in ("backlash", "elasticity", "pre_sliding"):
         assert by_name[name].standing == "not measured"
         assert by_name[name].reason in not_judged[name]
     assert REVERSALS in [one.trial for one in found.advice]
@@ -115,10 +115,8 @@ def test_an_effect_that_hides_and_effects_that_look_alike(store: Store) -> None:
     assert by_name["coulomb_asymmetry"].standing == "hidden"
     assert "load_friction_quadratic" in by_name["load_friction"].rivals  # one load: a line and a curve are one
     assert by_name["viscous_asymmetry"].standing == "judgeable"
-    assert by_name["rate_dependent_breakaway"].standing == "not measured"
     assert RAMPS in [one.trial for one in found.advice]
     starts = next(one for one in found.held if one.quantity == "starts from rest")
-    assert f"{starts.found.split()[0]} starts from rest whose effort" in by_name["rate_dependent_breakaway"].reason
     assert starts.lacking.startswith("12 are needed")
 
 

@@ -11,9 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from bench.evaluation.blind.result import Standing
-from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
 from compensator.lab.at_rest.breakaway_regression import fit_breakaway
-from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.at_rest.breakaway_rows import enough_starts
 from compensator.lab.diagnosis.breakaway_family import breakaway_blocks
 from compensator.lab.effects.catalogue import candidates, effect_named
 from compensator.lab.model.fitted import Fit
@@ -37,8 +36,8 @@ def standing_at_breakaway(fit: Fit, name: str) -> Standing | None:
         fit: of the model without the effect.
         name: of the effect.
     """
-    rows, effect = breakaway_rows(fit), effect_named(name)
-    if rows is None or effect.breakaway is None or int(rows.training.sum()) < FEWEST_STARTS:
+    rows, effect = enough_starts(fit), effect_named(name)
+    if rows is None or effect.breakaway is None:
         return None
     true = fit_breakaway(rows, [*fit.effects, effect])
     base = replace(fit_breakaway(rows, fit.effects), weight=true.weight)

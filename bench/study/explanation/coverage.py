@@ -7,9 +7,7 @@ from bench.store import Store
 from bench.study.errors import lab_errors
 from bench.study.material import load_model
 from bench.study.models.coverage import Advice, Coverage, Held, JudgedEffect
-from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
-from compensator.lab.at_rest.breakaway_rows import breakaway_rows
-from compensator.lab.at_rest.few_rows import starts_counted
+from compensator.lab.at_rest.breakaway_rows import FEWEST_STARTS, breakaway_rows, starts_counted
 from compensator.lab.comparison.judgeable import Judgeable, judgeable
 from compensator.lab.effects.effect import Effect
 from compensator.lab.rows import coverage as lab
@@ -42,7 +40,7 @@ def coverage(store: Store, study_id: int, model_id: int | None = None) -> Covera
         fit = material.fit_of(model)
         found, effects, starts = lab.coverage_of(fit.dataset), judgeable(fit), starts_counted(breakaway_rows(fit))
     held = list(_held(found, fit.dataset, len(material.definition.too_short), effects, starts))
-    advice = _advice(found, effects)
+    advice = _advice(found, effects, starts)
     count = {name: sum(one.standing == name for one in effects) for name in ("judgeable", "confounded")}
     best = f" What would help most: {advice[0].trial}." if advice else ""
     return Coverage(
@@ -160,7 +158,7 @@ def _warms_up(temperature_c: tuple[float, float] | None) -> bool:
     return temperature_c is not None and temperature_c[1] - temperature_c[0] >= WARM_K
 
 
-def _advice(found: lab.Coverage, effects: Sequence[Judgeable]) -> list[Advice]:
+def _advice(found: lab.Coverage, effects: Sequence[Judgeable], starts: int) -> list[Advice]:
     """What the trials lack, what opens most effects first; nothing that is there already."""
     opened: dict[str, list[str]] = {}
     for one in effects:
@@ -169,10 +167,16 @@ def _advice(found: lab.Coverage, effects: Sequence[Judgeable]) -> list[Advice]:
     ranked = sorted(opened.items(), key=lambda item: -len(item[1]))
     advice = [Advice(trial=trial, effects=names) for trial, names in ranked]
     ratio = found.fast / found.slow if found.slow > 0.0 else 0.0
-    for lacks, trial in ((found.repeats == 0, REPEAT), (not found.both_directions, BOTH), (ratio < WIDE, SPEEDS)):
-        if lacks and trial not in opened:
-            advice.append(Advice(trial=trial, effects=[]))
-    return advice
+    lacking = {
+        REPEAT: found.repeats == 0,
+        BOTH: not found.both_directions,
+        SPEEDS: ratio < WIDE,
+        RAMPS: starts < FEWEST_STARTS,
+    }
+    return [
+        *advice,
+        *(Advice(trial=trial, effects=[]) for trial, lacks in lacking.items() if lacks and trial not in opened),
+    ]
 
 
 def _opens(one: Judgeable, found: lab.Coverage) -> str:
@@ -185,7 +189,7 @@ def _opens(one: Judgeable, found: lab.Coverage) -> str:
     if effect.varies_with == "session_s":
         return SESSION
     if one.few:
-        return RAMPS if effect.rows == "breakaway" else REVERSALS
+        return REVERSALS
     if one.standing == "not measured":
         return ""
     if not found.both_directions:

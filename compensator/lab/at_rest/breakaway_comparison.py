@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from compensator.lab.at_rest.breakaway_regression import BACK, LAG, BreakawayFit, fit_breakaway, held_out_breakaway
-from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.at_rest.breakaway_rows import enough_starts
 from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.effects.effect import Effect, Parameter, shape_parameters
 from compensator.lab.model.fitted import Fit
@@ -15,7 +15,6 @@ from compensator.lab.model.intervals import CONFIDENCE, ParameterEstimate
 from compensator.lab.model.linear import solve
 from compensator.lab.recordings.recording import FloatArray
 
-FEWEST_STARTS = 12  # fewer do not carry a regression
 NOTES = {
     BACK: "of the contacts: they are still bent the way the joint came",
     LAG: "of the measurement: a start is seen a little late",
@@ -43,8 +42,8 @@ class BreakawayComparison:
 
 def compare_breakaway(fit: Fit) -> BreakawayComparison | None:
     """Hold a fitted model against its starts from rest; None where there are too few to fit anything to."""
-    rows = breakaway_rows(fit)
-    if rows is None or int(rows.training.sum()) < FEWEST_STARTS:
+    rows = enough_starts(fit)
+    if rows is None:
         return None
     found = fit_breakaway(rows, fit.effects)
     inside = rows.training
@@ -57,8 +56,8 @@ def compare_breakaway(fit: Fit) -> BreakawayComparison | None:
 
 def held_out_both(before: Fit, after: Fit) -> tuple[HeldOut, HeldOut] | None:
     """Held-out error of two models of the same trials on their starts, under the weights of the first."""
-    rows = breakaway_rows(before)
-    if rows is None or int(rows.training.sum()) < FEWEST_STARTS:
+    rows = enough_starts(before)
+    if rows is None:
         return None
     one, other = (fit_breakaway(rows, fit.effects) for fit in (before, after))
     return held_out_breakaway(one), held_out_breakaway(other, one.weight)

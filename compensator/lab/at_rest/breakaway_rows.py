@@ -12,6 +12,7 @@ from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import Dataset, Trial
 
 RISE_S = 0.1  # that static friction takes to come up, at least: a quicker start shows the servo, not the contact
+FEWEST_STARTS = 12  # fewer do not carry a regression
 SCATTER = 0.25  # of static friction: an effort that scatters more is not known at the start
 PAIR = 2  # starts of a trial in a row that make an independent unit
 
@@ -69,7 +70,7 @@ class BreakawayRows:
         motions = [(onset.motion, len(onset.rate)) for onset in self.onsets]
         known: dict[str, FloatArray] = {
             "rest": self.rest_s,
-            "effort_rate": self.rate,
+            "start_rate": self.rate,
             "position": self.position,
             "direction": self.direction,
             "load": self.held,
@@ -118,6 +119,17 @@ def breakaway_rows(fit: Fit) -> BreakawayRows | None:
         unit=_units(trial_index),
         training=np.isin(trial_index, trained_trials(dataset, fit.training)),
     )
+
+
+def enough_starts(fit: Fit) -> BreakawayRows | None:
+    """The same where the training trials have enough to carry a regression; None where they have not."""
+    rows = breakaway_rows(fit)
+    return rows if starts_counted(rows) >= FEWEST_STARTS else None
+
+
+def starts_counted(rows: BreakawayRows | None) -> int:
+    """How many starts from rest whose effort is known a model is fitted to."""
+    return 0 if rows is None else int(rows.training.sum())
 
 
 def shares_of(effects: Sequence[Effect]) -> list[tuple[Effect, BreakawayShare]]:
@@ -172,6 +184,7 @@ def at_rest_motion(fit: Fit, motion: Motion, index: IntArray, position: FloatArr
         effort_rate=nothing,
         temperature_c=motion.temperature_c[index],
         supply_v=motion.supply_v[index],
+        start_rate=np.nan,  # what it does to starts, each share says by its onset
     )
     load = nothing
     for term in fit.terms:

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import t as student
 
-from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
 from compensator.lab.at_rest.breakaway_regression import BreakawayFit, fit_breakaway
-from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.at_rest.breakaway_rows import enough_starts
 from compensator.lab.at_rest.rests import Windows, extrapolated, limits_of, windows_of
 from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.model.fitted import Fit
@@ -110,10 +109,8 @@ def compare_at_rest(fit: Fit) -> RestComparison | None:
 
 
 def _starts(fit: Fit) -> BreakawayFit | None:
-    rows = breakaway_rows(fit)
-    if rows is None or int(rows.training.sum()) < FEWEST_STARTS:
-        return None
-    return fit_breakaway(rows, fit.effects)
+    rows = enough_starts(fit)
+    return None if rows is None else fit_breakaway(rows, fit.effects)
 
 
 def _side(fit: Fit, windows: Windows, beyond: FloatArray, deviation: FloatArray, known_from: int) -> Side:

@@ -2,7 +2,7 @@
 
 What the model can make of an effect's columns is taken out first. An effect of which hardly anything is left hides in
 the model; two of which one makes up for the other are confounded. Neither needs the measured effort. What a diagnosis
-would not judge, for want of reversals or starts from rest, is not measured here either.
+would not judge, for want of reversals, is not measured here either.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from compensator.lab.at_rest.few_rows import few_rows
+from compensator.lab.at_rest.few_reversals import few_reversals
 from compensator.lab.effects.catalogue import candidates
 from compensator.lab.effects.effect import Effect
 from compensator.lab.errors import NotApplicableError
@@ -41,7 +41,7 @@ class Judgeable:
         reason: what they lack, or where it hides; "" where nothing.
         rivals: effects that look alike in these trials.
         smallest: size, root mean square over that of the effort, from which it would show; NaN where it cannot.
-        few: whether rows are what is lacking, near reversals or at starts from rest.
+        few: whether rows near reversals are what is lacking.
     """
 
     effect: Effect
@@ -72,7 +72,7 @@ def judgeable(fit: Fit) -> list[Judgeable]:
     base = _orthonormal(fit.columns[fit.training])
     dataset = with_own_prediction(fit.dataset, fit.terms)
     wide = widened(fit, "moving") if fit.dataset.rows == "sliding" else fit
-    too_few = few_rows(fit)
+    too_few = few_reversals(fit) or {}
     for effect in candidates(fit.names, fit.dataset.facts):
         if effect.name in too_few:
             reason = too_few[effect.name].partition("; ")[0]

@@ -13,7 +13,6 @@ from compensator.lab.at_rest.breakaway_regression import (
     lag_column,
 )
 from compensator.lab.at_rest.breakaway_rows import BreakawayRows, shares_of
-from compensator.lab.at_rest.few_rows import few_starts
 from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
 from compensator.lab.diagnosis.confirmation import is_confirmed
@@ -42,7 +41,7 @@ from compensator.lab.screening.evidence import (
 SPREAD = 3.0  # longest over shortest rest, or quickest over slowest rate, that shows an effect of it
 WITH_LAG, WITHOUT_LAG = 0, 1  # bases that effects are judged on top of
 TINY = float(np.finfo(float).tiny)
-RANGES = {"rest": "rests", "effort_rate": "rates of the effort"}
+RANGES = {"rest": "rests", "start_rate": "rates of the effort"}
 
 
 @dataclass(frozen=True)
@@ -54,9 +53,9 @@ class _Judged:
 
 
 def breakaway_answer(
-    fit: Fit, rows: BreakawayRows | None, sliding: Mapping[str, float] | None = None
-) -> tuple[Answer | None, dict[str, str]]:
-    """Judge the family on breakaway events; None where there are too few, and why effects cannot be judged.
+    fit: Fit, rows: BreakawayRows, sliding: Mapping[str, float] | None = None
+) -> tuple[Answer, dict[str, str]]:
+    """Judge the family on breakaway events; beside the answer, why effects cannot be judged.
 
     Args:
         fit: of the model.
@@ -65,9 +64,6 @@ def breakaway_answer(
             warmth shows that a hundred times in sliding for once in a start: where sliding says no, starts are not
             enough to name it.
     """
-    too_few = few_starts(fit, rows)
-    if rows is None or too_few is not None:
-        return None, too_few or {}
     base = fit_breakaway(rows, fit.effects)
     blocks, bases, left_out = breakaway_blocks(base, candidates(fit.names, fit.dataset.facts))
     unit = rows.unit[rows.training]
@@ -88,7 +84,7 @@ def breakaway_answer(
     sentence = _sentence(ranked[0], p_value, int(rows.training.sum()), stretches) if found else ""
     notes = [] if found else _too_few(stretches)
     verdict: Verdict = "missing" if found else "nothing"
-    if found and ranked[0].effect.rows != "breakaway":
+    if found:
         ranked[0] = replace(ranked[0], explained=fit_effects(fit, [*fit.names, ranked[0].effect.name]))
     return Answer(verdict, sentence, p_value, ranked, None, notes), left_out
 
@@ -138,8 +134,9 @@ def breakaway_blocks(base: BreakawayFit, wanted: Sequence[Effect]) -> tuple[list
 
 
 def held_against(candidate: Candidate, sliding: Mapping[str, float] | None) -> Candidate:
-    """The candidate, refused where steady sliding speaks against an effect that shows there, too."""
-    if sliding is None or candidate.effect.rows != "sliding":
+    """The candidate, refused where steady sliding speaks against an effect that shows there, too, and by no start."""
+    share = candidate.effect.breakaway
+    if sliding is None or candidate.effect.rows != "sliding" or (share is not None and share.driver in RANGES):
         return candidate
     shown = sliding.get(candidate.effect.name, 1.0) <= SIGNIFICANT
     return candidate if shown else replace(candidate, refused="steady sliding does not show it")

@@ -16,6 +16,7 @@ SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
 SLIGHT_PART = 0.05  # of what effects that were added explain, root mean square: a formula is rarely right to more
 LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
 UNSURE_GAIN = "gain not sure"
+NOT_PROVED = {"score not above 0", "may be luck"}  # what noise alone may do as well
 LEAST_GAIN_NEAR_REVERSALS = 0.02  # twice what effects with memory gain, surely, on joints that lack nothing
 LEAST_GAIN_OF_CHAIN = 0.05  # every measuring chain bends a little, and is a little late
 
@@ -50,6 +51,12 @@ def nearest_one(candidates: Sequence[Candidate]) -> Candidate | None:
     """Of effects that are no luck and not sure to help, that with the most evidence; None without."""
     near = [one for one in candidates if one.score > VERY_STRONG and doubts(one) == [UNSURE_GAIN]]
     return max(near, key=lambda one: one.score, default=None)
+
+
+def helps_unproved(candidate: Candidate) -> bool:
+    """Whether it lowers the held-out error for sure, by more than every measuring chain bends, and may yet be luck."""
+    found = set(doubts(candidate))
+    return bool(found) and found <= NOT_PROVED and candidate.gain.low >= LEAST_GAIN_OF_CHAIN
 
 
 def helpful_curve(gathered: Candidates, generic: Screening) -> tuple[Evidence, HeldOut] | None:

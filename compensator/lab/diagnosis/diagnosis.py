@@ -4,12 +4,13 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from compensator.lab.diagnosis.note import Note
-from compensator.lab.effects.effect import Effect, EffectRows, Shape
+from compensator.lab.effects.effect import Effect, MotionRows, Shape
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.picture import BinnedMean
 from compensator.lab.screening.evidence import Evidence
 
+JudgedRows = Literal[MotionRows, "breakaway"]
 Verdict = Literal["missing", "nothing", "unknown-effect", "data-problem"]
 
 
@@ -61,7 +62,7 @@ class Candidate:
     after: float
     gain: Gain
     picture: Picture | None
-    rows: EffectRows = "sliding"
+    rows: JudgedRows = "sliding"
     refused: str = ""
     impossible: str = ""
     evidence: Evidence | None = field(default=None, repr=False)

@@ -3,25 +3,21 @@
 from dataclasses import dataclass, replace
 
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
-from compensator.lab.diagnosis.confirmation import is_confirmed
+from compensator.lab.diagnosis.confirmation import helps_unproved, is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.examination import FORMULA_SHARE, best_shapes, examine
 from compensator.lab.diagnosis.remaining import what_remains, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
 from compensator.lab.diagnosis.wording import (
+    helps_in_words,
     missing_in_words,
     nothing_in_words,
     partly_in_words,
     unknown_in_words,
 )
-from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.model.fit import with_columns
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.gain import predicts_better
-from compensator.lab.model.validation import held_out
-from compensator.lab.screening.base import Block
-from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Evidence, Screening, among_all
+from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
+from compensator.lab.screening.evidence import Evidence, Screening, among_all, kept_evidence
 
 FEWEST_SHOWN = 2
 
@@ -93,41 +89,32 @@ class _Family:
         notes = what_remains(candidate.explained, self.gathered, candidate.effect.name)
         sentence, p_value = missing_in_words(candidate), candidate.p_value
         sentence += partly_in_words(candidate) if notes else ""
-        return Answer("missing", sentence, p_value, [candidate, *others], None, notes, bool(notes), self.gathered)
+        return Answer("missing", sentence, p_value, [candidate, *others], None, notes, bool(notes))
 
     def _shadow_of(self, candidate: Candidate) -> str:
-        """Why it is but the shadow of what explains much more, though that cannot be it; empty where it is none.
+        """Beside which effect it explains little near reversals, though that cannot be it; empty where there is none.
 
-        Near reversals that may be the effect itself as it was scanned, with a size or a shape that it cannot have.
+        Every joint leaves something there that many effects follow. In steady sliding the held-out error is enough.
         """
         assert candidate.evidence is not None
-        name, sliding = candidate.effect.name, self.gathered.show_in == "sliding"
-        others = [item for item in self.shapes if not (sliding and item.block.name == name)]
-        most = max(others, key=lambda item: item.noncentrality, default=candidate.evidence)
-        if candidate.evidence.noncentrality >= FORMULA_SHARE * most.noncentrality:
+        if self.gathered.show_in == "sliding":
             return ""
-        own = most.block.name == name
-        if (own or sliding) and self._predicts_better(candidate, most.block):
+        others = {one.block.name: self._beside_chain(one) for one in self.shapes}
+        others.pop(candidate.effect.name, None)
+        most = max(others, key=lambda name: others[name], default="")
+        if not most or candidate.evidence.noncentrality >= FORMULA_SHARE * others[most]:
             return ""
-        beside = "of what a scan of it does" if own else f"beside {most.block.name}, which cannot be it"
-        return f"{'as it can be, it ' * own}explains little {beside}"
+        return f"explains little beside {most}, which cannot be it"
 
-    def _predicts_better(self, candidate: Candidate, block: Block) -> bool:
-        """Whether it predicts other trials better, for sure, than another one does with coefficients of any sign.
-
-        Of steady sliding that decides; near reversals every joint leaves something that any effect predicts, and it
-        decides between sizes and shapes of one effect.
-        """
-        assert candidate.explained is not None
-        fit, rows = self.gathered.fit, self.gathered.show_in
-        columns = fit.dataset.unchecked_columns(effect_named(block.name), [block.shape])[0]
-        return predicts_better(
-            *(held_out(one, rows) for one in (candidate.explained, with_columns(fit, block.name, columns)))
-        )
+    def _beside_chain(self, item: Evidence) -> float:
+        """Noncentrality of an effect beside all that the measuring chain, and every contact, makes."""
+        block = replace(item.block, base=WITH_CHAIN)
+        return kept_evidence(self.gathered.bases, [block])[block.name]
 
     def nothing(self, generic: Screening | None) -> Answer:
         """That no effect is confirmed, and what is left all the same, where free curves are asked for."""
         p_value = self.named.p_value
         left = None if generic is None else without_a_name(self.gathered, generic)
         sentence = left or nothing_in_words(p_value, self.gathered.stretches)
-        return Answer("nothing", sentence, p_value, self.examined, None, [], remains=left is not None)
+        notes = [helps_in_words(one) for one in self.examined if generic is not None and helps_unproved(one)]
+        return Answer("nothing", sentence, p_value, self.examined, None, notes, remains=left is not None)

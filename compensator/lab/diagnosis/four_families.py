@@ -3,12 +3,10 @@
 from dataclasses import dataclass
 
 from compensator.lab import progress
-from compensator.lab.at_rest.breakaway_rows import breakaway_rows
-from compensator.lab.at_rest.few_rows import few_reversals
+from compensator.lab.at_rest.breakaway_rows import enough_starts
+from compensator.lab.at_rest.few_reversals import few_reversals
 from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
-from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import explains
 from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.diagnosis.unfollowed import with_curve
 from compensator.lab.effects.catalogue import effect_named
@@ -19,9 +17,8 @@ from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import predicts_better
 from compensator.lab.model.validation import held_out
-from compensator.lab.screening.base import Block
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import Screening, kept_evidence
+from compensator.lab.screening.evidence import Screening
 from compensator.lab.screening.gathering import gather, with_noise
 
 # stages of a diagnosis, as whoever waits for it is told of them
@@ -58,9 +55,8 @@ class FourFamilies:
 
     @property
     def in_order(self) -> list[Answer]:
-        """Those that could be judged, in order; last a name for the little near reversals that anything leaves."""
-        found = [one for one in (self.steady, self.memory, self.rest, self.chain) if one is not None]
-        return sorted(found, key=lambda one: (one is self.memory) * one.is_slight)
+        """Those that could be judged, in order."""
+        return [one for one in (self.steady, self.memory, self.rest, self.chain) if one is not None]
 
     def first(self) -> Answer:
         """The answer: that of the first family with one, but for a name of a later family that goes before it."""
@@ -74,34 +70,14 @@ class FourFamilies:
     def _goes_before(self, one: Answer, named: Fit, first: Answer) -> bool:
         """Whether a name goes before another answer: before a curve, unless that predicts other trials better for sure.
 
-        Before another name, which predicts other trials worse, near reversals too unless both are judged in steady
-        sliding: where that is its shadow, or, of the joint itself, has less evidence.
+        Before another name, which predicts other trials worse for sure, near reversals too unless both are judged in
+        steady sliding; a start from rest is no motion to be predicted.
         """
         rows: MotionRows = "sliding" if one is self.chain and first is self.steady else "moving"
-        if first.verdict == "missing":
-            if first.explained is None or not _predicts_better(named, first.explained, rows):
-                return False
-            more = one is not self.chain and _evidence(one) > _evidence(first)
-            return first is not self.rest and (more or _is_shadow(first, one.candidates[0], named))
+        if first.explained is not None:
+            return first is not self.rest and _predicts_better(named, first.explained, rows)
         curve = with_curve(self.gathered.fit, first.driver)
         return curve is None or not _predicts_better(curve, named, rows)
-
-
-def _evidence(answer: Answer) -> float:
-    """Noncentrality of what is named; 0 of what starts from rest alone name."""
-    evidence = answer.candidates[0].evidence
-    return 0.0 if evidence is None else evidence.noncentrality
-
-
-def _is_shadow(first: Answer, other: Candidate, named: Fit) -> bool:
-    """Whether a name loses its evidence once another effect is in the model, as fitted there; none of starts does."""
-    evidence, gathered = first.candidates[0].evidence, first.gathered
-    if evidence is None or gathered is None:
-        return False
-    shape = named.shapes.get(other.effect.name, ())
-    columns = gathered.fit.dataset.unchecked_columns(other.effect, [shape])[0]
-    beside = gathered.with_block(Block(other.effect.name, gathered.tested(columns), 0, 1, shape))
-    return explains(kept_evidence(beside.bases, [evidence.block]), evidence)
 
 
 def judged(fit: Fit) -> FourFamilies:
@@ -128,7 +104,8 @@ def judged(fit: Fit) -> FourFamilies:
     progress.enter(MEMORY)
     memory, not_judged = _memory_of(fit)
     progress.enter(REST)
-    rest, not_at_rest = breakaway_answer(fit, breakaway_rows(fit), _least_p(sliding))
+    starts = enough_starts(fit)
+    rest, not_at_rest = (None, {}) if starts is None else breakaway_answer(fit, starts, _least_p(sliding))
     left_out = {**gathered.left_out, **not_judged, **not_at_rest}
     return FourFamilies(steady, memory, rest, chain, gathered, left_out)
 

@@ -9,6 +9,7 @@ NoteCode = Literal[
     "also-missing",
     "at-rest",
     "differs-by-run",
+    "helps",
     "recurs",
     "structure-remains",
     "swings",
@@ -21,6 +22,7 @@ absorbed: a term that the model has may be an effect that hides in it.
 also-missing: another family of effects has something missing, too.
 at-rest: the joint at rest contradicts the model.
 differs-by-run: a constant differs from run to run.
+helps: an effect lowers the held-out error well and for sure, though noise alone would look as strong.
 recurs: with the effect named, what is left comes back with the position.
 structure-remains: with it, structure over a variable remains.
 swings: with it, what is left swings at one frequency.

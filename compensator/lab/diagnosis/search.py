@@ -173,8 +173,7 @@ def _swaps(start: Fit, fit: Fit) -> list[Step]:
     steps: list[Step] = []
     for name in [name for name in fit.names if name not in start.names][:-1]:
         without = fit_effects(fit, [other for other in fit.names if other != name])
-        rows = effect_named(name).rows
-        better = None if rows == "breakaway" else best_named(without, rows)
+        better = best_named(without, effect_named(name).rows)
         if better is not None and better not in fit.names:
             swapped = fit_effects(fit, [better if other == name else other for other in fit.names])
             now, before = on_even_terms(held_out(swapped), held_out(fit))

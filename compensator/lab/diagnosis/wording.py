@@ -2,6 +2,7 @@
 
 from compensator.lab.chance import SIGNIFICANT, chance_in_words
 from compensator.lab.diagnosis.diagnosis import Candidate
+from compensator.lab.diagnosis.note import Note
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.base import HYSTERESIS_DRIVER
@@ -57,7 +58,17 @@ def nothing_in_words(p_value: float, stretches: int | None = None) -> str:
         return f"Nothing is missing that these trials can show ({chance})."
     return (
         f"No effect of the catalogue is confirmed: the residual is not mere noise ({chance_in_words(p_value)}), but "
-        "none lowers the held-out error for sure."
+        "none has all that a name needs."
+    )
+
+
+def helps_in_words(candidate: Candidate) -> Note:
+    """What is no answer, as noise alone would look as strong, and lowers the error on other trials all the same."""
+    gain, effect = candidate.gain, candidate.effect
+    told = f"({gain.in_words(candidate.before, candidate.after, 0)}; {chance_in_words(candidate.p_value)})"
+    text = f"{effect.title} lowers the held-out error all the same, for sure {told}: add it, and see what it leaves."
+    return Note(
+        "helps", text, {"effect": effect.name, "gain": gain.value, "gain_low": gain.low, "gain_high": gain.high}
     )
 
 

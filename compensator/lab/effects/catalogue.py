@@ -135,8 +135,9 @@ def effect_named(name: str) -> Effect:
         return known[name]
     if (curve := free_curve.free_curve(name)) is not None:
         return curve
-    near = difflib.get_close_matches(name, [*known, *free_curve.known()], n=3) or list(known)
-    raise UnknownEffectError(f"effect '{name}' is not in the catalogue; known are for instance: {', '.join(near)}")
+    near = difflib.get_close_matches(name, [*known, *free_curve.known()], n=3)
+    hint = f"known are for instance: {', '.join(near)}" if near else "install the package that offers it"
+    raise UnknownEffectError(f"effect '{name}' is not in the catalogue; {hint}; `friction-bench effects` lists all")
 
 
 def default_effects(facts: Facts, load_is_measured: bool = False) -> tuple[str, ...]:

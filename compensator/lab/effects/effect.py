@@ -15,7 +15,6 @@ from compensator.lab.recordings.reversals import Strokes, since_rest, strokes_of
 
 Shape = tuple[float, ...]
 MotionRows = Literal["sliding", "moving"]
-EffectRows = Literal[MotionRows, "breakaway"]
 Round = Literal["force", "against the motion"]
 PEOPLE = ("Coulomb", "Stribeck")
 MOST_TURNS = (
@@ -52,6 +51,8 @@ class Motion:
         misread_acceleration: what the position sensor adds to the acceleration, as far as the model says; position and
             its rates are without it.
         measured_load: of a torque sensor between gear and load [N m]; NaN where there is none.
+        start_rate: at which the effort changed when the joint last stood [effort/s], the usual one before that.
+        usual_start_rate: geometric mean over all trials. Both are NaN where it never stood, or no effort is measured.
         travelled: way from the start of the session to that of the trial, as far as the trials tell.
         usual_speed: way over time, of the whole session; 0 where nothing tells.
     """
@@ -84,6 +85,8 @@ class Motion:
     load_inertia: float = 0.0
     misread_acceleration: FloatArray | float = 0.0
     measured_load: FloatArray | float = np.nan
+    start_rate: FloatArray | float = np.nan
+    usual_start_rate: float = np.nan
     travelled: float = 0.0
     usual_speed: float = 0.0
 
@@ -295,8 +298,7 @@ class Effect:
             between channels never hides physics.
         builds_on: what of a fitted model's prediction the columns use: "load" (`load_effort`), "inertia", or "effort"
             (`predicted`, `effort_rate`), which is the sum of all effects that do not build on it themselves.
-        rows: on which it shows: "moving" where it lives near reversals and starts, which steady sliding cannot see;
-            "breakaway" where it shows in the effort of breaking away only.
+        rows: on which it shows: "moving" where it lives near reversals and starts, which steady sliding cannot see.
         breakaway: its share in that effort; None where it has none, or none that is known.
         facts: attributes of `Facts` that must be known.
         hidden_by: effects in whose free scale it hides: while one of them is in the model, it cannot be judged.
@@ -346,7 +348,7 @@ class Effect:
     builds_on: Literal["load", "inertia", "effort"] | None = None
     standing_in: frozenset[str] = field(default_factory=frozenset)
     varies_with: str | None = None
-    rows: EffectRows = "sliding"
+    rows: MotionRows = "sliding"
     facts: tuple[str, ...] = ()
     hidden_by: tuple[str, ...] = ()
     efforts: tuple[EffortQuantity, ...] = ()

@@ -5,9 +5,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, wraps
 from importlib.metadata import EntryPoint, entry_points
-from typing import ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar, get_args
 
-from compensator.lab.effects.effect import Effect
+from compensator.lab.effects.effect import Effect, MotionRows
 from compensator.lab.errors import EffectFailedError
 
 P = ParamSpec("P")
@@ -72,6 +72,11 @@ def _loaded(point: EntryPoint) -> Effect:
     empty = [name for name in _TEXTS if not isinstance(getattr(effect, name), str) or not getattr(effect, name)]
     if empty:
         raise EffectFailedError(f"its {empty[0]} is {getattr(effect, empty[0])!r}; wanted is a text")
+    if effect.rows not in get_args(MotionRows):
+        wanted = " or ".join(get_args(MotionRows))
+        raise EffectFailedError(
+            f"its rows are '{effect.rows}'; wanted is {wanted}, and `breakaway` for starts from rest"
+        )
     for parameter in effect.parameters:
         parameter.unit_in("N m", "rad")
     return _guarded(replace(effect, offered_by=_package(point)))

@@ -33,7 +33,8 @@ class Gain:
     def in_words(self, before: float, after: float, digits: int = 1) -> str:
         """The gain and its interval, beside relative errors."""
         unlike = self.is_unlike(before, after)
-        evenly = ", each row counting by how well it is known" if unlike else ""
+        alike = f"{1.0 - after / before:.{digits}%}" if unlike else ""
+        evenly = f", each row counting by how well it is known; {alike} if all count alike" if unlike else ""
         ends = (round(one, digits + 2) + 0.0 for one in (self.value, self.low, self.high))  # nothing has no sign
         value, low, high = (f"{one:.{digits}%}" for one in ends)
         return f"gain {value}, 90 % interval {low} .. {high}{evenly}"

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from compensator.lab.recordings.recording import FloatArray
 
-REST_S = 0.05  # slower than `slow` for this long is a rest
+REST_S = 0.05  # slower than `slow` for this long is a rest; over this long the rate before a start is taken
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +92,23 @@ def since_rest(
     dwell = np.where(known, lengths[np.maximum(last, 0)], 0.0)
     travel = np.where(known, path - path[ends[np.maximum(last, 0)] - 1], np.inf)
     return dwell, travel
+
+
+def start_rate(effort: FloatArray, velocity: FloatArray, rate_hz: float, slow: float) -> FloatArray:
+    """At which rate, over REST_S, the effort changed when the joint last stood or turned, shape (n,); NaN before that.
+
+    Args:
+        effort: as measured, shape (n,).
+        velocity: shape (n,).
+        rate_hz: of the samples.
+        slow: speed below which the joint stands.
+    """
+    span = max(1, round(REST_S * rate_hz))
+    rate = np.full(len(effort), np.nan)
+    rate[span:] = np.abs(effort[span:] - effort[:-span]) * rate_hz / span
+    known = (np.abs(velocity) < slow) & np.isfinite(rate)
+    last = np.maximum.accumulate(np.where(known, np.arange(len(effort)), -1))
+    return np.where(last >= 0, rate[np.maximum(last, 0)], np.nan)
 
 
 def _ends(strokes: Strokes) -> FloatArray:

@@ -16,6 +16,7 @@ from compensator.lab.recordings.processing import DIFFERENTIATION_FACTOR, SATURA
 from compensator.lab.recordings.pushed import pushed
 from compensator.lab.recordings.recording import SESSION_START, FloatArray, Recording
 from compensator.lab.recordings.regimes import Regime, classify, near_flank_change
+from compensator.lab.recordings.reversals import start_rate
 from compensator.lab.rows.dataset import Dataset, Processing, Scales, Trial
 
 SLOW_SHARE = 0.02  # of the 95 % quantile of speed: below, the direction of motion is uncertain
@@ -59,7 +60,7 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
         raise UnusableDataError(f"the joint does not move in any trial; {WANTED_MOTION}")
     noise = _velocity_noise(signals, facts, cutoff)
     slow = max(SLOW_SHARE * fast, NOISE_FACTOR * noise)
-    scales = Scales(noise, slow, fast, span, _session_span_s(signals))
+    scales = Scales(noise, slow, fast, span, _session_span_s(signals), _usual_start_rate(signals, slow))
     trials = _with_way([_make_trial(s, facts, cutoff, scales) for s in progress.each(signals)])
     plain = Dataset(trials, effort, facts, cutoff, processing.rows, scales)
     settled = replace(plain, trials=_on_one_flank(trials), cache={}, unfiltered={})
@@ -154,6 +155,13 @@ def _session_span_s(signals: Sequence[Signals]) -> float:
     return max(ends) - min(starts)
 
 
+def _usual_start_rate(signals: Sequence[Signals], slow: float) -> float:
+    """Geometric mean of the rates at which the effort changes when the joint stands, one of each sample after."""
+    rates = np.concatenate([start_rate(s.effort, s.velocity, s.rate_hz, slow) for s in signals])
+    known = rates[rates > 0.0]
+    return float(np.exp(np.mean(np.log(known)))) if len(known) else float("nan")
+
+
 def _check_conditions(recordings: Sequence[Recording]) -> None:
     """Raise where a load or a length is told, but not as a number: it would count as none."""
     for recording in recordings:
@@ -168,6 +176,7 @@ def _check_conditions(recordings: Sequence[Recording]) -> None:
 
 def _make_trial(signals: Signals, facts: Facts, cutoff_hz: float, scales: Scales) -> Trial:
     nothing = np.zeros(len(signals.time_s))
+    rate = start_rate(signals.effort, signals.velocity, signals.rate_hz, scales.slow)
     motion = Motion(
         facts=facts,
         conditions=signals.recording.conditions,
@@ -192,6 +201,8 @@ def _make_trial(signals: Signals, facts: Facts, cutoff_hz: float, scales: Scales
         slow=scales.slow,
         fast=scales.fast,
         measured_load=signals.load,
+        start_rate=np.where(np.isfinite(rate), rate, scales.start_rate),
+        usual_start_rate=scales.start_rate,
     )
     step = max(1, int(signals.rate_hz / (ROWS_PER_CUTOFF_PERIOD * cutoff_hz)))
     picked = np.arange(step // 2, len(signals.time_s), step)

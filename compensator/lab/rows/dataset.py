@@ -63,6 +63,7 @@ class Scales:
         slow: speed below which direction is uncertain; fast: 95 % quantile of speed.
         position_span: range of position.
         session_span_s: from the first trial's start to the last one's end.
+        start_rate: geometric mean of the rates at which the effort changes when the joint starts [effort/s].
     """
 
     noise: float
@@ -70,6 +71,7 @@ class Scales:
     fast: float
     position_span: float
     session_span_s: float
+    start_rate: float = np.nan
 
 
 @dataclass(frozen=True)

@@ -43,6 +43,10 @@ def _rest(trial: Trial) -> FloatArray:
     return trial.motion.last_rest[0]
 
 
+def _start_rate(trial: Trial) -> FloatArray:
+    return np.broadcast_to(trial.motion.start_rate, trial.motion.time_s.shape)
+
+
 DRIVERS: dict[str, Driver] = {
     driver.name: driver
     for driver in (
@@ -60,6 +64,7 @@ DRIVERS: dict[str, Driver] = {
         Driver("effort", "predicted effort", "{effort}", lambda t: t.motion.predicted),
         Driver("since_reversal", "travel since the last reversal", "{position}", _since_reversal),
         Driver("rest", "length of the last rest", "s", _rest),
+        Driver("start_rate", "rate of the effort at the last start", "{effort}/s", _start_rate),
     )
 }
 

@@ -86,16 +86,16 @@ class _Builder:
         for effect in catalogue.candidates(self._fit.names, dataset.facts):
             if effect.rows != self._show_in:
                 continue
+            try:
+                dataset.check_applicable(effect)
+            except NotApplicableError as reason:
+                left_out[effect.name] = str(reason)
+                continue
             if hiding := [name for name in effect.hidden_by if name in self._fit.names]:
                 left_out[effect.name] = (
                     f"{effect.name} hides in the free scale of {' and '.join(hiding)}: nothing can tell it from "
                     f"{' or '.join(effect.confused_with)}; {effect.excited_by} would"
                 )
-                continue
-            try:
-                dataset.check_applicable(effect)
-            except NotApplicableError as reason:
-                left_out[effect.name] = str(reason)
                 continue
             shapes = effect.shapes(dataset.trials[0].motion)
             wanted.append((effect, path.shown(shapes) if effect.goes_round is not None else shapes))

@@ -8,6 +8,7 @@ import numpy as np
 
 from compensator.lab.effects.effect import Motion, MotionRows
 from compensator.lab.effects.electrical import measurement_delay
+from compensator.lab.effects.friction.memory import pre_sliding
 from compensator.lab.effects.mechanics import backlash, elasticity
 from compensator.lab.effects.mechanics.beyond_teeth import TOLD_ARM
 from compensator.lab.recordings.differentiation import rate_of_change
@@ -16,6 +17,7 @@ from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset
 
 NAMES = ("jerk", "slow_sign", "fast_sign", "sign_rate")
+NEAR_REVERSALS = ("delay", "smoothing", "stiff_contact")
 KNOWN_PLAY = dict(zip(("known_play_less", "known_play", "known_play_more"), ABOUT_KNOWN, strict=True))  # not missing
 # shares of what the owner knows, as far as data sheets are off, and dampings of teeth that swing: a spring that hardly
 # swings would take what other causes leave
@@ -27,8 +29,8 @@ def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[
 
     The far side of teeth and shaft is not where the motor side is that is measured: what follows from the free play
     and the stiffness that are known is not missing, be it near a reversal or where slow motion changes flanks. Near
-    reversals a delay looks like memory: there its own column stands too, and the effort's second derivative, which is
-    what a low-pass takes beside the delay.
+    reversals a delay looks like memory: there its own column stands too, the effort's second derivative, which is what
+    a low-pass takes beside the delay, and contacts that give over the shortest distance that can be told: all do.
     """
     stack = dataset.stack([_columns(trial.motion, trial.signals.rate_hz) for trial in dataset.trials])
     named = dict(zip(NAMES, stack.T, strict=True))
@@ -39,9 +41,12 @@ def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[
         found = dataset.unchecked_columns(backlash.EFFECT, gaps)
         named |= {name: columns[:, 0] for name, columns in zip(KNOWN_PLAY, found, strict=True)}
     if show_in == "moving":
-        named["delay"] = dataset.columns(measurement_delay.EFFECT, ())[:, 0]
+        delay = dataset.columns(measurement_delay.EFFECT, ())[:, 0]
         rates = (rate_of_change(trial.motion.effort_rate, trial.signals.rate_hz) for trial in dataset.trials)
-        named["smoothing"] = dataset.stack(rate[None] for rate in rates)[:, 0]
+        smoothing = dataset.stack(rate[None] for rate in rates)[:, 0]
+        shortest = min(pre_sliding.shapes(dataset.trials[0].motion))
+        stiff_contact = dataset.unchecked_columns(pre_sliding.EFFECT, [shortest])[0][:, 0]
+        named |= dict(zip(NEAR_REVERSALS, (delay, smoothing, stiff_contact), strict=True))
     return named
 
 

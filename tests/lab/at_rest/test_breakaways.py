@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.at_rest.breakaway_comparison import FEWEST_STARTS
 from compensator.lab.at_rest.breakaway_regression import BACK, LAG, fit_breakaway, held_out_breakaway, lag_column
-from compensator.lab.at_rest.breakaway_rows import breakaway_rows
+from compensator.lab.at_rest.breakaway_rows import FEWEST_STARTS, breakaway_rows, enough_starts, starts_counted
 from compensator.lab.at_rest.breakaways import resolution_of, starts_of
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer, held_against
 from compensator.lab.diagnosis.confirmation import is_confirmed
@@ -154,11 +153,12 @@ def test_equal_rests_cannot_show_what_rests_do():
     assert "needs rates of the effort that differ" in left_out["rate_dependent_breakaway"]
 
 
-def test_too_few_starts_say_which_trial_is_wanted():
+def test_too_few_starts_carry_no_regression():
     fit = ramp_fit(dwells_s=(0.3, 3.0), rates=(0.1,))
-    answer, left_out = breakaway_answer(fit, breakaway_rows(fit))
-    assert answer is None
-    assert f"wanted {FEWEST_STARTS}; record breakaway ramps" in left_out["rate_dependent_breakaway"]
+    assert 0 < starts_counted(breakaway_rows(fit)) < FEWEST_STARTS
+    assert enough_starts(fit) is None
+    fit = ramp_fit()
+    assert len(enough_starts(fit)) == len(breakaway_rows(fit)) >= FEWEST_STARTS
 
 
 def test_events_are_judged_by_flips_of_whole_units():

@@ -12,11 +12,13 @@ from compensator.lab.diagnosis.families import answer_of
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.diagnosis.physical import POSSIBLE, Impossible
 from compensator.lab.effects.catalogue import default_effects, effect_named
-from compensator.lab.model.fit import fit_effects, fit_model, widened
+from compensator.lab.model.fit import fit_model, widened
 from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from compensator.lab.screening.base import Block
+from compensator.lab.screening.base import Base, Block
+from compensator.lab.screening.candidates import WITH_CHAIN
+from compensator.lab.screening.evidence import kept_evidence
 from compensator.lab.screening.gathering import gather, with_noise
 from tests.lab.diagnosis.test_diagnose import SHAKEN
 from tests.lab.far_side import ARM_KG_M2, twisting
@@ -65,21 +67,6 @@ def test_near_reversals_a_name_must_hold_in_the_model_that_would_be_had(monkeypa
     assert is_confirmed(elasticity) == (verdict == "missing")
 
 
-@pytest.mark.parametrize(
-    ("share", "better", "verdict"), [(1.0, False, "missing"), (0.01, False, "nothing"), (0.01, True, "missing")]
-)
-def test_a_name_explains_most_of_what_a_scan_of_it_does_or_predicts_better(
-    monkeypatch, twisted, share, better, verdict
-):
-    """Freely scaled, a scanned shape may explain much that the effect cannot, within its bounds."""
-    fit, gathered, named = twisted
-    whole = examination._as_fitted
-    less = lambda one: replace(one, noncentrality=share * one.noncentrality)  # noqa: E731
-    monkeypatch.setattr(examination, "_as_fitted", lambda *given: [less(one) for one in whole(*given)])
-    monkeypatch.setattr(families._Family, "_predicts_better", lambda *_: better)
-    assert answer_of(fit, gathered, named, None).verdict == verdict
-
-
 def test_in_steady_sliding_what_cannot_be_its_formula_is_left_to_free_curves(monkeypatch):
     """As a filter of the measuring chain that would have to be a small part of the effort."""
     fit = fit_model(make_dataset(recordings(SPRUNG, seed=4), FACTS, Processing()), default_effects(FACTS))
@@ -122,7 +109,7 @@ def test_in_steady_sliding_a_name_must_hold_in_the_model_that_would_be_had(monke
     ("extra", "cannot_be", "verdict", "first"),
     [
         (lambda x: 0.02 * x.q, "spring", "missing", "cogging"),
-        (lambda x: 0.02 * np.sin(3.0 * x.q), "cogging", "nothing", "spring"),  # what is next is but its shadow
+        (lambda x: 0.02 * np.sin(3.0 * x.q), "cogging", "missing", "spring"),  # it helps on other trials
     ],
 )
 def test_what_does_not_hold_leaves_its_place_to_the_next(monkeypatch, extra, cannot_be, verdict, first):
@@ -139,45 +126,58 @@ SPRUNG = Joint(extra=lambda x: 0.05 * x.q)
 
 
 @pytest.mark.parametrize(
-    ("share", "rows", "better", "is_shadow"),
-    [
-        (0.7, "moving", False, False),
-        (0.7, "sliding", False, False),
-        (0.4, "moving", True, True),  # near reversals every joint leaves something that is predicted
-        (0.4, "sliding", False, True),
-        (0.4, "sliding", True, False),
-    ],
+    ("share", "rows", "is_shadow"), [(0.7, "moving", False), (0.4, "moving", True), (0.4, "sliding", False)]
 )
-def test_what_explains_much_less_is_a_shadow_unless_it_predicts_better_in_steady_sliding(
-    monkeypatch, share, rows, better, is_shadow
-):
+def test_near_reversals_what_explains_much_less_is_a_shadow(monkeypatch, share, rows, is_shadow):
     shapes = [
         SimpleNamespace(block=Block(name, np.empty((0, 1)), 0, 1), noncentrality=evidence)
-        for name, evidence in (("spring", 100.0), ("cogging", 100.0 * share))
+        for name, evidence in (("backlash", 100.0), ("elasticity", 100.0 * share))
     ]
     family = families._Family(SimpleNamespace(show_in=rows), None, shapes, [])
-    monkeypatch.setattr(families._Family, "_predicts_better", lambda *_: better)
+    monkeypatch.setattr(families._Family, "_beside_chain", lambda _, one: one.noncentrality)
     most, less = (SimpleNamespace(effect=effect_named(one.block.name), evidence=one) for one in shapes)
     assert family._shadow_of(most) == ""
-    assert family._shadow_of(less) == ("explains little beside spring, which cannot be it" if is_shadow else "")
+    assert family._shadow_of(less) == ("explains little beside backlash, which cannot be it" if is_shadow else "")
 
 
-@pytest.mark.parametrize(("rows", "said"), [("sliding", ""), ("moving", "as it can be")])
-def test_in_steady_sliding_another_order_of_an_effect_casts_no_shadow_on_it(monkeypatch, rows, said):
-    """The scan holds all orders of cogging; the fit takes the one that lowers the error most."""
-    scanned, fitted = (SimpleNamespace(block=Block("cogging", np.empty((0, 1)), 0, 1), noncentrality=n) for n in (9, 4))
-    monkeypatch.setattr(families._Family, "_predicts_better", lambda *_: False)
-    family = families._Family(SimpleNamespace(show_in=rows), None, [scanned], [])
-    found = family._shadow_of(SimpleNamespace(effect=effect_named("cogging"), evidence=fitted))
-    assert found.startswith(said)
-    assert (found == "") == (said == "")
+def test_what_every_contact_gives_casts_no_shadow():
+    """Pre-sliding of the shortest distance explains most of what it does near reversals, and none of it beside that."""
+    made = recordings(Joint(), trials=[*plans(), *SHAKEN], seed=4)
+    fit = widened(fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS)), "moving")
+    gathered = with_noise(gather(fit, "moving"))
+    shortest = next(block for block in gathered.named if block.name == "pre_sliding")
+    assert shortest.base != WITH_CHAIN
+    base = gathered.bases[shortest.base]
+    bent = Base.of(base.basis, base.residual + 50.0 * shortest.columns[:, 0] / np.linalg.norm(shortest.columns))
+    chain = Base.of(gathered.bases[WITH_CHAIN].basis, bent.residual)
+    bases = [chain if index == WITH_CHAIN else bent for index in range(len(gathered.bases))]
+    family = families._Family(replace(gathered, bases=bases), None, [], [])
+    item = gathered.screened([shortest]).evidence[0]
+    assert kept_evidence(bases, [shortest])["pre_sliding"] > 100.0
+    assert family._beside_chain(item) == pytest.approx(0.0, abs=1e-6)
 
 
-@pytest.mark.parametrize(("of", "better"), [("spring", True), ("cogging", False)])
-def test_a_shadow_does_not_predict_better_than_what_casts_it(of, better):
-    """The joint has a spring: cogging of any phase that stands for it is held against the spring itself."""
-    fit = fit_model(make_dataset(recordings(SPRUNG, seed=4), FACTS, Processing()), default_effects(FACTS))
-    gathered = gather(fit)
-    other = next(block for block in gathered.named if block.name != of and block.name in ("spring", "cogging"))
-    candidate = SimpleNamespace(explained=fit_effects(fit, [*fit.names, of]))
-    assert families._Family(gathered, None, [], [])._predicts_better(candidate, other) == better
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({}, True),
+        ({"gain": Gain(0.3, 0.04, 0.4)}, False),  # as little as every measuring chain bends
+        ({"impossible": "it cannot be"}, False),
+        ({"p_value": 0.001, "score": 20.0}, False),  # it is named
+    ],
+)
+def test_what_predicts_better_for_sure_and_may_be_luck_is_a_note_and_no_answer(monkeypatch, changes, told):
+    fit = fit_model(make_dataset(recordings(Joint(), seed=4), FACTS, Processing()), default_effects(FACTS))
+    gathered = with_noise(gather(fit))
+    blocks = [block for block in gathered.named if block.name == "spring"]
+    as_if = {"gain": Gain(0.4, 0.3, 0.5), "p_value": 0.4, "score": -1.0, "before": 0.02, "after": 0.01, **changes}
+    examined = examination.examine
+    monkeypatch.setattr(families, "examine", lambda *given: [replace(one, **as_if) for one in examined(*given)])
+    monkeypatch.setattr(families, "unfollowed", lambda *_: None)
+    answer = answer_of(fit, gathered, gathered.screened(blocks), gathered.screened(gathered.curves.blocks))
+    notes = [note for note in answer.notes if note.code == "helps"]
+    assert [note.values["effect"] for note in notes] == ["spring"] * told
+    if told:
+        assert (answer.verdict, answer.remains) == ("nothing", False)
+        assert "gain 40%, 90 % interval 30% .. 50%" in notes[0].text
+        assert "p = 0.4" in notes[0].text

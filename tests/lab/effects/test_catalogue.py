@@ -86,6 +86,10 @@ def test_an_effect_of_another_package_is_known_fitted_and_found(hose):
         (HOSE.replace('"Hose"', "None"), "its title is None; wanted is a text"),
         (HOSE.replace('"hose"', '"viscous"'), "there is an effect 'viscous' already; give it another name"),
         (HOSE.replace("{position}3", "{place}3"), "KeyError: 'place'"),
+        (
+            HOSE.replace('source="a test"', 'source="a test", rows="breakaway"'),
+            "its rows are 'breakaway'; wanted is sliding or moving, and `breakaway` for starts from rest",
+        ),
     ],
 )
 def test_a_broken_effect_is_left_out_by_itself(offering, caplog, text, reason):

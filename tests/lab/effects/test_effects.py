@@ -14,6 +14,7 @@ from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.drivers import DRIVERS
 from compensator.lab.screening.nuisance import NAMES as NUISANCES
+from compensator.lab.screening.nuisance import NEAR_REVERSALS
 
 EFFECTS = catalogue()
 LOAD_KG, ARM_M = 0.2, 0.4
@@ -47,6 +48,8 @@ def motion(joint: str = "rotary", **conditions: float | bool) -> Motion:
         slow=0.06,
         fast=2.9,
         measured_load=0.9 * np.cos(q),
+        start_rate=0.5 + time_s,
+        usual_start_rate=0.8,
     )
 
 
@@ -185,7 +188,10 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "pre_sliding": ((0.1,), lambda m: [dahl(m.position, 0.1)]),
     "backlash": ((0.3, 1.0), crossing),
     "dwell_strengthening": ((0.1,), lambda m: [np.zeros(41)]),
-    "rate_dependent_breakaway": ((), lambda m: [np.zeros(41)]),
+    "rate_dependent_breakaway": (
+        (0.6,),
+        lambda m: [(0.3 - m.time_s) / (1.3 + m.time_s) * np.exp(-np.abs(m.velocity) / 0.6) * np.sign(m.velocity)],
+    ),
     "elasticity": ((2.0, 0.05, 1.0), twisted),
     "encoder_eccentricity": (
         (2.0,),
@@ -216,7 +222,7 @@ def test_what_an_effect_says_of_itself(name):
     effect = EFFECTS[name]
     assert effect.driver in DRIVERS
     assert set(effect.confused_with) <= set(EFFECTS) - {name}
-    assert effect.standing_in <= set(NUISANCES)
+    assert effect.standing_in <= {*NUISANCES, *NEAR_REVERSALS}
     assert effect.title
     assert effect.physics.endswith(".")
     for parameter in effect.parameters:

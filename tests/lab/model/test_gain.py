@@ -95,4 +95,4 @@ def test_a_trial_that_no_other_tells_of_does_not_outweigh_what_they_do_tell():
 def test_a_gain_that_the_errors_beside_it_do_not_have_is_explained(gain, after, unlike):
     words = Gain(gain, gain - 0.1, gain + 0.1).in_words(0.1, after, 0)
     assert words.startswith(f"gain {gain:.0%}, 90 % interval")
-    assert ("each row counting by how well it is known" in words) == unlike
+    assert (f"each row counting by how well it is known; {1.0 - after / 0.1:.0%} if all count alike" in words) == unlike

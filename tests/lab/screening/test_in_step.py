@@ -40,7 +40,8 @@ def test_candidates_are_held_against_that_effort(gathered):
 
 
 def test_what_lives_near_reversals_is_judged_on_top_of_one_model(gathered):
-    assert {block.base for block in gathered.named} == {WITH_CHAIN}
+    bases = {block.base for block in gathered.named if block.name != "pre_sliding"}
+    assert bases == {WITH_CHAIN}  # but for what stands for the contacts that give, as all do
 
 
 def test_what_a_low_pass_makes_of_the_effort_is_no_evidence(gathered):

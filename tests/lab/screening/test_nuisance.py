@@ -14,7 +14,7 @@ from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.regimes import Regime
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Dataset, Processing
-from compensator.lab.screening.nuisance import STIFFNESS_ABOUT, far_side_weight, nuisance_columns
+from compensator.lab.screening.nuisance import NEAR_REVERSALS, STIFFNESS_ABOUT, far_side_weight, nuisance_columns
 from tests.lab.synthetic import FACTS, Bench, Joint, Plan, recordings
 
 GAP_RAD, STIFFNESS_N_M_RAD = 0.004, 200.0
@@ -72,7 +72,7 @@ def test_known_teeth_and_shafts_are_not_missing_in_slow_motion_either():
     fit = fitted(told)
     dataset = with_own_prediction(fit.dataset, fit.terms)
     sliding, moving = (nuisance_columns(dataset, show_in) for show_in in ("sliding", "moving"))
-    assert {*moving} - {*sliding} == {"delay", "smoothing"}
+    assert {*moving} - {*sliding} == set(NEAR_REVERSALS)
     flying = sliding["known_play"][dataset.regime == Regime.SLIDING]
     assert np.abs(flying).max() > 0.0
 

@@ -38,6 +38,7 @@ EFFECT = Effect(
     shape_units=("{position}",),
     confused_with=("backlash", "frictional_lag", "measurement_delay"),
     rows="moving",
+    standing_in=frozenset({"stiff_contact"}),
     least_of_friction=0.5,
     ends_within_scan=1,
 )
