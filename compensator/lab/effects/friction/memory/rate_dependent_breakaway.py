@@ -45,7 +45,8 @@ EFFECT = Effect(
     physics=(
         "The quicker the effort rises, the sooner a joint breaks away: the contacts have less time to creep and to "
         "grow together. As the static level is lower then, so is all of the Stribeck share until the joint stands "
-        "again. What a start gains before its motion is seen goes the other way, so only a net fall is named there."
+        "again. In the effort of the start itself, what is gained before the motion is seen goes the other way: "
+        "only a net fall is named there."
     ),
     equation=(
         r"-c\,\frac{r - \bar r}{r + \bar r}\,e^{-|\dot q|/v_s}\,\mathrm{sgn}(\dot q),\quad r = |d\tau/dt|\;"
