@@ -163,7 +163,8 @@ def test_what_the_teeth_lose_goes_by_the_load_of_each_moment():
 @pytest.mark.parametrize(
     ("name", "works"),
     [("viscous_asymmetry", True), ("spring", True), ("viscous_temperature", True), ("pre_sliding", False),
-     ("measurement_delay", False), ("warm_up", False), ("motor_warm_up", False), ("inertia", False)],
+     ("measurement_delay", False), ("warm_up", False), ("motor_warm_up", False), ("inertia", False),
+     ("rate_dependent_breakaway", False)],
 )  # fmt: skip
 def test_what_needs_the_past_is_left_out(name, works):
     assert works_online(effect_named(name)) is works

@@ -126,6 +126,7 @@ def test_what_starts_back_the_way_it_came_after_short_rests_is_no_dwell():
         ("weight_friction", {}, True),  # it hides in steady sliding
         ("weight_friction", {"weight_friction": 0.001}, False),
         ("dwell_strengthening", {}, False),  # it does not show there
+        ("rate_dependent_breakaway", {"rate_dependent_breakaway": 0.5}, False),  # quick strokes hardly show it
         ("weight_friction", None, False),  # nobody asked
     ],
 )
