@@ -122,7 +122,7 @@ def breakaway_rows(fit: Fit) -> BreakawayRows | None:
 
 
 def enough_starts(fit: Fit) -> BreakawayRows | None:
-    """The same where the training trials have enough to carry a regression; None where they have not."""
+    """The starts of a fitted model's trials; None where those of training are too few for a regression."""
     rows = breakaway_rows(fit)
     return rows if starts_counted(rows) >= FEWEST_STARTS else None
 

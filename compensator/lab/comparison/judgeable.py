@@ -12,7 +12,6 @@ from typing import Literal
 
 import numpy as np
 
-from compensator.lab.at_rest.few_reversals import few_reversals
 from compensator.lab.effects.catalogue import candidates
 from compensator.lab.effects.effect import Effect
 from compensator.lab.errors import NotApplicableError
@@ -22,6 +21,7 @@ from compensator.lab.model.held_out_error import relative_error
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset
+from compensator.lab.screening.gathering import few_reversals
 
 Standing = Literal["judgeable", "confounded", "hidden", "not measured"]
 SURE = 5.0  # standard deviations: an effect of that size is found nine times in ten among all others

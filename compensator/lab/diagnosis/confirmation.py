@@ -16,7 +16,7 @@ SLIGHT_GAIN = 0.10  # of the held-out error, at the high end of its interval
 SLIGHT_PART = 0.05  # of what effects that were added explain, root mean square: a formula is rarely right to more
 LEAST_GAIN = 0.005  # a smaller fall of the held-out error is of no use, however sure it is
 UNSURE_GAIN = "gain not sure"
-NOT_PROVED = {"score not above 0", "may be luck"}  # what noise alone may do as well
+UNPAID, LUCK = "score not above 0", "may be luck"  # what noise alone may do as well
 LEAST_GAIN_NEAR_REVERSALS = 0.02  # twice what effects with memory gain, surely, on joints that lack nothing
 LEAST_GAIN_OF_CHAIN = 0.05  # every measuring chain bends a little, and is a little late
 
@@ -37,8 +37,8 @@ def doubts(candidate: Candidate) -> list[str]:
     least = LEAST_GAIN if candidate.effect.rows == "sliding" else LEAST_GAIN_NEAR_REVERSALS
     least = LEAST_GAIN_OF_CHAIN if candidate.effect.standing_in else least
     asked = {
-        "score not above 0": candidate.score > 0.0,
-        "may be luck": candidate.p_value <= SIGNIFICANT,
+        UNPAID: candidate.score > 0.0,
+        LUCK: candidate.p_value <= SIGNIFICANT,
         f"explains under {LEAST_OF_EFFORT:.2%} of the effort": explained >= LEAST_OF_EFFORT**2,
         f"gain under {least:.1%}": gain.value >= least,
         UNSURE_GAIN: gain.low > 0.0,
@@ -56,7 +56,7 @@ def nearest_one(candidates: Sequence[Candidate]) -> Candidate | None:
 def helps_unproved(candidate: Candidate) -> bool:
     """Whether it lowers the held-out error for sure, by more than every measuring chain bends, and may yet be luck."""
     found = set(doubts(candidate))
-    return bool(found) and found <= NOT_PROVED and candidate.gain.low >= LEAST_GAIN_OF_CHAIN
+    return bool(found) and found <= {UNPAID, LUCK} and candidate.gain.low >= LEAST_GAIN_OF_CHAIN
 
 
 def helpful_curve(gathered: Candidates, generic: Screening) -> tuple[Evidence, HeldOut] | None:

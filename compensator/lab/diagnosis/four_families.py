@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 from compensator.lab import progress
 from compensator.lab.at_rest.breakaway_rows import enough_starts
-from compensator.lab.at_rest.few_reversals import few_reversals
 from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.breakaway_family import breakaway_answer
 from compensator.lab.diagnosis.families import answer_of
@@ -19,7 +18,7 @@ from compensator.lab.model.gain import predicts_better
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Screening
-from compensator.lab.screening.gathering import gather, with_noise
+from compensator.lab.screening.gathering import few_reversals, gather, with_noise
 
 # stages of a diagnosis, as whoever waits for it is told of them
 CHECKS = "Checking the data"

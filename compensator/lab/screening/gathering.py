@@ -16,6 +16,7 @@ from compensator.lab.model.order_search import Path
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.weights import weights_of
 from compensator.lab.recordings.recording import BoolArray, FloatArray
+from compensator.lab.recordings.regimes import Regime
 from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.candidates import Candidates, Curves
 from compensator.lab.screening.discrepancy import model_columns
@@ -24,6 +25,23 @@ from compensator.lab.screening.generic import free_curves
 from compensator.lab.screening.noise import Noise
 from compensator.lab.screening.nuisance import nuisance_columns
 from compensator.lab.screening.random_effects import RandomEffect
+
+FEWEST_REVERSAL_ROWS = 40
+
+
+def few_reversals(fit: Fit) -> dict[str, str] | None:
+    """Effect with memory that a model does not have -> how few rows near reversals it has; None where there are enough.
+
+    One count for all who ask.
+    """
+    dataset = fit.dataset
+    trained = np.isin(dataset.trial_index, np.unique(dataset.trial_index[fit.training]))
+    count = int((trained & (dataset.regime == Regime.TRANSIENT)).sum())
+    if count >= FEWEST_REVERSAL_ROWS:
+        return None
+    why = f"needs reversals and starts: {count} rows lie near one, wanted {FEWEST_REVERSAL_ROWS}; record "
+    wanted = [effect for effect in catalogue.candidates(fit.names, dataset.facts) if effect.rows == "moving"]
+    return {effect.name: f"{effect.name} {why}{effect.excited_by}" for effect in wanted}
 
 
 def gather(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
