@@ -1,5 +1,7 @@
 """What the page offers once a diagnosis is there: one thing to press, and that is what helps."""
 
+import re
+
 import pytest
 
 from tests.browser.browser import intercept
@@ -40,6 +42,10 @@ def test_a_missing_effect_is_the_one_thing_to_add(diagnosed):
     page = diagnosed()
     page.locator("article").first.wait_for()
     assert primaries(page) == ["Add Direction-asymmetric viscous friction"]
+    gain, low, high = re.search(
+        r"gain (.+? %), 90 % interval (.+? %) to (.+? %)", page.inner_text(".diagnosed .sentence")
+    ).groups()
+    assert f"would fall by {gain} ({low} to {high})." in page.locator("article").first.inner_text()
 
 
 def test_a_diagnosis_is_there_again_when_the_page_is_loaded_anew(diagnosed):

@@ -192,11 +192,11 @@ RANKED = {
 @pytest.mark.parametrize(
     ("changed", "said", "unsaid"),
     [
-        ({}, "would fall by 20.0 % (10.0 % to 30.0 %). All of the interval is a gain.", "No change"),
+        ({}, "would fall by 20 % (10 % to 30 %). All of the interval is a gain.", "No change"),
         ({"gain": -3.8e-7, "gain_low": -1e-6, "gain_high": 2e-7}, "No change of the held-out error. Of", "rise"),
         (
             {"gain": 1e-7, "gain_low": -0.01, "gain_high": 0.02},
-            "No change of the held-out error (−1.0 % to 2.0 %",
+            "No change of the held-out error (−1 % to 2 %",
             "fall",
         ),
         (

@@ -41,7 +41,7 @@ def test_a_small_second_effect_is_slight_and_said_to_be(answer):
     found = answer(0.0106, 0.0103, Gain(0.03, 0.01, 0.06), ADDED)
     assert found.slight
     assert found.verdict == "missing"  # the evidence is what it is
-    assert found.advice.startswith("Next to nothing is left: Direction-asymmetric viscous friction would take 3.0%")
+    assert found.advice.startswith("Next to nothing is left: Direction-asymmetric viscous friction would take 3%")
 
 
 @pytest.mark.parametrize(

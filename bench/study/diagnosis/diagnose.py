@@ -15,6 +15,7 @@ from compensator.lab.diagnosis.confirmation import doubts, explained_part, sligh
 from compensator.lab.diagnosis.unfollowed import Provisional, provisional
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.gain import shown
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.rows.drivers import DRIVERS
 
@@ -82,8 +83,8 @@ def _advice(found: diagnosis.Diagnosis, explained: float) -> str:
         return ""
     share = explained_part(one.before, one.after) / explained
     return (
-        f"Next to nothing is left: {one.effect.title} would take {one.gain.value:.1%} of the held-out error away "
-        f"(90 % interval {one.gain.low:.1%} .. {one.gain.high:.1%}), {share:.1%} of what the added effects "
+        f"Next to nothing is left: {one.effect.title} would take {shown(one.gain.value)} of the held-out error away "
+        f"(90 % interval {shown(one.gain.low)} .. {shown(one.gain.high)}), {share:.1%} of what the added effects "
         "explain. A formula that is nearly right leaves as much: this is no reason to add another effect."
     )
 

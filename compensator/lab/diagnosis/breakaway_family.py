@@ -204,7 +204,7 @@ def _sentence(best: Candidate, p_value: float, starts: int, units: int) -> str:
     return (
         f"{named_in_words(best, 'starts')}: over {starts} starts from rest ({units} of them independent), adding "
         f"it changes the held-out error of the breakaway effort from {best.before:.2%} to {best.after:.2%} "
-        f"({best.gain.in_words(best.before, best.after, 0)}; {chance_in_words(p_value)})."
+        f"({best.gain.in_words(best.before, best.after)}; {chance_in_words(p_value)})."
     )
 
 

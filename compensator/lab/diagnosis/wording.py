@@ -14,7 +14,7 @@ LOOK_AT_HOSES = "Look at hoses, cables and seals that bend with the joint."
 
 def missing_in_words(best: Candidate) -> str:
     """The answer where an effect is missing, with its numbers."""
-    gain, where = best.gain.in_words(best.before, best.after, 0), ", near reversals too," * (best.rows == "moving")
+    gain, where = best.gain.in_words(best.before, best.after), ", near reversals too," * (best.rows == "moving")
     return (
         f"{named_in_words(best, 'trials')}: adding it changes the held-out error{where} from {best.before:.2%} to "
         f"{best.after:.2%} ({gain}; {chance_in_words(best.p_value)})."
@@ -65,7 +65,7 @@ def nothing_in_words(p_value: float, stretches: int | None = None) -> str:
 def helps_in_words(candidate: Candidate) -> Note:
     """What is no answer, as noise alone would look as strong, and lowers the error on other trials all the same."""
     gain, effect = candidate.gain, candidate.effect
-    told = f"({gain.in_words(candidate.before, candidate.after, 0)}; {chance_in_words(candidate.p_value)})"
+    told = f"({gain.in_words(candidate.before, candidate.after)}; {chance_in_words(candidate.p_value)})"
     text = f"{effect.title} lowers the held-out error all the same, for sure {told}: add it, and see what it leaves."
     return Note(
         "helps", text, {"effect": effect.name, "gain": gain.value, "gain_low": gain.low, "gain_high": gain.high}

@@ -8,6 +8,7 @@ from compensator.lab.model.held_out_error import HeldOut, on_even_terms
 from compensator.lab.recordings.recording import FloatArray
 
 RESAMPLES = 999
+NO_SHARE = 1e-7  # less is rounding
 CONFIDENCE = 0.90
 NOTABLE = 0.01  # of a gain: how far it is from that of the errors beside it, before somebody wonders why
 
@@ -30,14 +31,16 @@ class Gain:
             abs(self.value - (1.0 - after / before)) > NOTABLE or self.value > 0.0 > before - after
         )
 
-    def in_words(self, before: float, after: float, digits: int = 1) -> str:
+    def in_words(self, before: float, after: float) -> str:
         """The gain and its interval, beside relative errors."""
-        unlike = self.is_unlike(before, after)
-        alike = f"{1.0 - after / before:.{digits}%}" if unlike else ""
-        evenly = f", each row counting by how well it is known; {alike} if all count alike" if unlike else ""
-        ends = (round(one, digits + 2) + 0.0 for one in (self.value, self.low, self.high))  # nothing has no sign
-        value, low, high = (f"{one:.{digits}%}" for one in ends)
+        evenly = ", each row counting by how well it is known" if self.is_unlike(before, after) else ""
+        value, low, high = map(shown, (self.value, self.low, self.high))
         return f"gain {value}, 90 % interval {low} .. {high}{evenly}"
+
+
+def shown(share: float) -> str:
+    """A share as per cent, as the page has it: one under 5 % by its first two digits; nothing has no sign."""
+    return f"{100.0 * share:.2g}%" if NO_SHARE < abs(share) < 0.05 else f"{round(share, 2) + 0.0:.0%}"
 
 
 def held_out_gain(before: HeldOut, after: HeldOut, seed: int = 0) -> Gain:

@@ -13,7 +13,7 @@ export function beforeAfter(place, result, { undo }) {
     ["training error before", result.before.training, "purple"], ["training error after", result.after.training, "blue"]];
   replace(place, h("div", { class: "good", role: "status" }, spoken(result.sentence)),
     h("div", { class: "bars" }, rows.map(([text, value, colour]) => bar(text, value, highest, colour))),
-    h("p", { class: "soft" }, `Gain ${interval(result.gain, result.gain_low, result.gain_high, (value) => percent(value, 1))} of the held-out error, 90 % interval.`),
+    h("p", { class: "soft" }, `Gain ${interval(result.gain, result.gain_low, result.gain_high, (value) => percent(value, 0))} of the held-out error, 90 % interval.`),
     h("div", { class: "row" }, h("button", { type: "button", onclick: undo }, "Undo this change")));
 }
 

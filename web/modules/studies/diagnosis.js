@@ -111,7 +111,7 @@ export function evidence(one) {
 
 function gained(one) {
   const [low, high] = ends(one);
-  const show = (value) => percent(value, 1);
+  const show = (value) => percent(value, 0); // as the sentence above has it
   if (Math.abs(one.gain) < NEXT_TO_NOTHING) {
     const wide = Math.max(Math.abs(low ?? 0), Math.abs(high ?? 0)) >= NEXT_TO_NOTHING;
     return `No change of the held-out error${wide ? ` (${show(one.gain_low)} to ${show(one.gain_high)} less)` : ""}.`;
