@@ -109,6 +109,19 @@ def test_what_a_diagnosis_does_not_judge_cannot_be_judged_before_it(store: Store
     assert REVERSALS in [one.trial for one in found.advice]
 
 
+def test_what_a_free_scale_hides_is_hidden_for_the_same_reason_as_in_a_diagnosis(
+    store: Store, experiment_id: int
+) -> None:
+    found = told(store, experiment_id)
+    last = diagnose(store, found.study_id)
+    not_judged = {str(one.values["effect"]): one.text for one in last.findings if one.code == "not-judged"}
+    for name in ("back_driving_friction", "coulomb_asymmetry"):
+        hides = next(one for one in found.effects if one.effect == name)
+        assert (hides.standing, hides.rivals) == ("hidden", [])
+        assert hides.reason.startswith(f"{name} hides in the free scale of ")
+        assert hides.reason in not_judged[name]
+
+
 def test_an_effect_that_hides_and_effects_that_look_alike(store: Store) -> None:
     found = told(store, imported(store, plans(loads_kg=(0.1,), repeats=1)))
     by_name = {one.effect: one for one in found.effects}

@@ -2,7 +2,7 @@
 
 What the model can make of an effect's columns is taken out first. An effect of which hardly anything is left hides in
 the model; two of which one makes up for the other are confounded. Neither needs the measured effort. What a diagnosis
-would not judge, for want of reversals, is not measured here either.
+would not judge, for want of reversals or of motion, or since a free scale hides it, is not judged here either.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,8 @@ from compensator.lab.model.held_out_error import relative_error
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset
-from compensator.lab.screening.gathering import few_reversals
+from compensator.lab.screening.evidence import too_few_stretches
+from compensator.lab.screening.gathering import few_reversals, hides_in_words
 
 Standing = Literal["judgeable", "confounded", "hidden", "not measured"]
 SURE = 5.0  # standard deviations: an effect of that size is found nine times in ten among all others
@@ -83,20 +84,31 @@ def judgeable(fit: Fit) -> list[Judgeable]:
         except NotApplicableError as error:
             found[effect.name] = Judgeable(effect, "not measured", str(error).partition("; ")[0], ())
             continue
+        if hidden := hides_in_words(effect, fit.names):
+            found[effect.name] = Judgeable(effect, "hidden", hidden, ())
+            continue
         smallest = _smallest(wide if effect.rows == "moving" else fit, one.left)
-        if not one.blocks and not effect.hidden_by:
+        if not one.blocks:
             found[effect.name] = Judgeable(effect, "not measured", "nothing in these trials excites it", ())
         elif not smallest < MOST:
-            hiding = " and ".join(name for name in effect.hidden_by if name in fit.names) or "the model"
-            reason = f"{hiding} makes up for {1.0 - one.left:.2%} of it"
+            reason = f"the model makes up for {1.0 - one.left:.2%} of it"
             found[effect.name] = Judgeable(effect, "hidden", reason, (), smallest)
         else:
             shown.append(replace(one, smallest=smallest))
+    if too_few_stretches(stretches_of(fit)):
+        short = "these trials are too short"
+        found |= {one.effect.name: Judgeable(one.effect, "not measured", short, ()) for one in shown}
+        shown = []
     for one in shown:
         alike = tuple(other.effect.name for other in shown if other is not one and _alike(one.blocks, other.blocks))
         standing: Standing = "confounded" if alike else "judgeable"
         found[one.effect.name] = Judgeable(one.effect, standing, "", alike, one.smallest)
     return [found[effect.name] for effect in candidates(fit.names, fit.dataset.facts)]
+
+
+def stretches_of(fit: Fit) -> int:
+    """How many stretches a diagnosis of steady sliding rests on."""
+    return fit.dataset.stretches(fit.training & fit.dataset.in_regimes("sliding"))
 
 
 def _smallest(fit: Fit, left: float) -> float:
@@ -106,7 +118,7 @@ def _smallest(fit: Fit, left: float) -> float:
         fit: on the rows where it shows: near reversals a model leaves more than in sliding.
         left: share of its power that the model leaves.
     """
-    stretches = len(np.unique(fit.dataset.block_index[fit.training]))
+    stretches = fit.dataset.stretches(fit.training)
     noise = relative_error(fit.residual[fit.training], fit.dataset.effort[fit.training])
     return SURE * noise / float(np.sqrt(stretches * left)) if left > TINY else nan
 

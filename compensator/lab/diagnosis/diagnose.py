@@ -10,7 +10,6 @@ from math import nan
 
 from compensator.lab import progress
 from compensator.lab.at_rest.rest_comparison import RestComparison, at_rest_in_words, compare_at_rest
-from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.absorbed import absorbed
 from compensator.lab.diagnosis.alien_effort import alien_effort
 from compensator.lab.diagnosis.answer import Answer
@@ -30,7 +29,7 @@ from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import Candidates
-from compensator.lab.screening.evidence import least_p_value
+from compensator.lab.screening.evidence import too_few_stretches
 from compensator.lab.screening.gathering import gather, with_noise
 
 
@@ -58,7 +57,7 @@ def diagnose(fit: Fit) -> Diagnosis:
         return _data_problem(fit, alien.text)
     progress.enter(LEFT)
     first = families.first()
-    too_short = first.verdict == "nothing" and least_p_value(families.gathered.stretches) > SIGNIFICANT
+    too_short = first.verdict == "nothing" and too_few_stretches(families.gathered.stretches)
     # an effect that leaves less than mending the data would makes more sense of an effort that seems alien
     explained = alien is not None and first.verdict == "missing" and first.candidates[0].after <= alien.leaves
     if alien is not None and not explained and (alien.mended or not too_short):

@@ -6,7 +6,7 @@ from compensator.lab.diagnosis.note import Note
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.base import HYSTERESIS_DRIVER
-from compensator.lab.screening.evidence import least_p_value
+from compensator.lab.screening.evidence import least_p_value, too_few_stretches
 
 HALF = 0.5  # of the error's power
 LOOK_AT_HOSES = "Look at hoses, cables and seals that bend with the joint."
@@ -51,8 +51,8 @@ def nothing_in_words(p_value: float, stretches: int | None = None) -> str:
         p_value: as in a diagnosis.
         stretches: independent stretches of BLOCK_S that it rests on; None where that is no limit.
     """
-    if stretches is not None and least_p_value(stretches) > SIGNIFICANT:
-        return _too_few(stretches)
+    if stretches is not None and too_few_stretches(stretches):
+        return too_short_in_words(stretches)
     if p_value > SIGNIFICANT:
         chance = f"{chance_in_words(p_value)}; {SIGNIFICANT:g} or less would tell"
         return f"Nothing is missing that these trials can show ({chance})."
@@ -91,8 +91,9 @@ def named_in_words(best: Candidate, of: str) -> str:
     return f"{best.effect.title} is missing" + (f"; these {of} cannot tell it from {others}" if others else "")
 
 
-def _too_few(stretches: int) -> str:
-    enough = next(count for count in range(1, 99) if least_p_value(count) <= SIGNIFICANT)
+def too_short_in_words(stretches: int) -> str:
+    """The answer where independent stretches are too few to tell whether anything is missing."""
+    enough = next(count for count in range(1, 99) if not too_few_stretches(count))
     return (
         f"These trials are too short to tell whether anything is missing: only {stretches} independent stretches of "
         f"{BLOCK_S:g} s, at best {chance_in_words(least_p_value(stretches))}, and {SIGNIFICANT:g} is needed; record "

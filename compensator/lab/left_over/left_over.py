@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.constants import Constants
 from compensator.lab.left_over.error_budget import PLAIN, WANDERING_BESIDE_A_NAME
@@ -17,7 +16,7 @@ from compensator.lab.model.weights import RowWeights
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.rows.dataset import BLOCK_S
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
-from compensator.lab.screening.evidence import least_p_value
+from compensator.lab.screening.evidence import too_few_stretches
 from compensator.lab.screening.gathering import gather_curves
 
 
@@ -101,7 +100,7 @@ def unexplained_in_words(left: LeftOver, driver: str | None, stretches: int, fac
         wanders: what is another one for seconds, in words; empty where nothing is.
     """
     none = "No effect of the catalogue is confirmed"
-    if least_p_value(stretches) > SIGNIFICANT:
+    if too_few_stretches(stretches):
         none = f"{stretches} stretches of {BLOCK_S:g} s are too few to name an effect"
     if left.line is not None:
         how = f"it {recurring_in_words(left.line, facts)}"

@@ -191,6 +191,10 @@ class Dataset:
         """Rows that a model is fitted to and judged on, shape (N,)."""
         return self.in_regimes(self.rows)
 
+    def stretches(self, rows: BoolArray) -> int:
+        """How many stretches of BLOCK_S rows (N,) are of."""
+        return len(np.unique(self.block_index[rows]))
+
     def in_regimes(self, choice: RowChoice) -> BoolArray:
         """Rows of these regimes, shape (N,)."""
         if choice == "all":

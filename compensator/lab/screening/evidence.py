@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import chdtrc, erfc, fdtrc, fdtri
 
-from compensator.lab.chance import LEAST_STATED, SIGN_FLIPS
+from compensator.lab.chance import LEAST_STATED, SIGN_FLIPS, SIGNIFICANT
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.screening.base import Base, Block
@@ -176,6 +176,11 @@ def among_all(p_value: float) -> float:
 def least_p_value(stretches: int) -> float:
     """The lowest p of a diagnosis on so many stretches: one flip of signs in 2^(stretches - 1) changes nothing."""
     return among_all(max(0.5 ** (stretches - 1), LEAST_STATED))
+
+
+def too_few_stretches(stretches: int) -> bool:
+    """Whether no evidence of a diagnosis on so many stretches could be more than chance."""
+    return least_p_value(stretches) > SIGNIFICANT
 
 
 def kept_evidence(bases: Sequence[Base], blocks: Sequence[Block]) -> dict[str, float]:

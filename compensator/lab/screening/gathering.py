@@ -1,6 +1,6 @@
 """Collects every effect and driver spline that could be missing from a fitted model, as blocks to be screened."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
@@ -42,6 +42,14 @@ def few_reversals(fit: Fit) -> dict[str, str] | None:
     why = f"needs reversals and starts: {count} rows lie near one, wanted {FEWEST_REVERSAL_ROWS}; record "
     wanted = [effect for effect in catalogue.candidates(fit.names, dataset.facts) if effect.rows == "moving"]
     return {effect.name: f"{effect.name} {why}{effect.excited_by}" for effect in wanted}
+
+
+def hides_in_words(effect: Effect, names: Collection[str]) -> str:
+    """Where an effect hides in a model of such effects, so that it cannot be judged; empty where it does not."""
+    if not (hiding := [name for name in effect.hidden_by if name in names]):
+        return ""
+    rivals = " or ".join(effect.confused_with)
+    return f"{effect.name} hides in the free scale of {' and '.join(hiding)}: nothing can tell it from {rivals}"
 
 
 def gather(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
@@ -109,11 +117,8 @@ class _Builder:
             except NotApplicableError as reason:
                 left_out[effect.name] = str(reason)
                 continue
-            if hiding := [name for name in effect.hidden_by if name in self._fit.names]:
-                left_out[effect.name] = (
-                    f"{effect.name} hides in the free scale of {' and '.join(hiding)}: nothing can tell it from "
-                    f"{' or '.join(effect.confused_with)}; {effect.excited_by} would"
-                )
+            if hidden := hides_in_words(effect, self._fit.names):
+                left_out[effect.name] = f"{hidden}; {effect.excited_by} would"
                 continue
             shapes = effect.shapes(dataset.trials[0].motion)
             wanted.append((effect, path.shown(shapes) if effect.goes_round is not None else shapes))
