@@ -13,6 +13,7 @@ from bench.errors import ConfigurationError
 from drivers.settings import Settings
 
 LONGEST_NAME = 200  # characters
+CHALLENGE = "unknown joint"  # name of the rig of a joint that was drawn for a challenge
 
 
 class Section(Settings):

@@ -4,6 +4,8 @@ from math import isnan
 from typing import Literal
 
 from bench.store import Store
+from bench.study.diagnosis.findings import findings_of_trials
+from bench.study.joint import joint_of
 from bench.study.material import Material, load_model
 from bench.study.models.comparison import (
     AtRest,
@@ -46,6 +48,8 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> Compari
     found = comparison.compare(fit)
     progress.enter(INTERVALS)
     parameters = estimates(fit)
+    told = findings_of_trials(fit, joint_of(store, material.definition))
+    notes = [*(one.text for one in told), *_notes(material, found), *(f"{one}." for one in left_open(fit, parameters))]
     return Comparison(
         study_id=study_id,
         model_id=model.id,
@@ -63,7 +67,8 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> Compari
         breakaway=_breakaway(found),
         series=series_of(material, fit),
         residual_against=_against(material, found),
-        notes=[*_notes(material, found), *(f"{one}." for one in left_open(fit, parameters))],
+        notes=notes,
+        findings=told,
     )
 
 
@@ -164,8 +169,6 @@ def _notes(material: Material, found: comparison.Comparison) -> list[str]:
             "The motion is so quick that the teeth cross their free play all the time: those rows are counted too, and "
             "the error is mostly theirs. Record slower motion, or keep the load on one side."
         )
-    if found.held_out.kind == "leave-one-block-out":
-        notes.append("Too few trials to hold one out: stretches of 2 s are left out instead, which flatters the model.")
     if found.floor is None:
         notes.append("No trial repeats another: how well any model could do is unknown. Repeat at least one trial.")
     unit = material.dataset.effort_definition.unit

@@ -1,6 +1,7 @@
 """`friction-bench challenge` and `reveal`."""
 
 import json
+import re
 import subprocess
 import sys
 
@@ -26,6 +27,15 @@ def test_from_the_draw_to_the_score(command):
     assert made.exit_code == 0, made.output
     assert command("import", "set").exit_code == 0
     assert command("study", "new", "x", "--experiment", 1).exit_code == 0
+    refused = command("study", "suggest", 1)
+    assert refused.exit_code == 3
+    assert "no trial of it can be recorded again" in " ".join(refused.stderr.split())
+    for asked in ("diagnose", "search", "compare", "coverage"):
+        shown = " ".join(command("study", asked, 1).stdout.split())
+        assert shown.count("drawn for a challenge and recorded once") == 1, shown
+        assert not re.search(r"to tell them apart|What would help|study (suggest|coverage)", shown), shown
+        found = json.loads(command("study", asked, 1, "--json").stdout)["findings"]
+        assert [one["code"] for one in found].count("recorded-once") == 1
     told = command("reveal", "set.answer", "--study", 1)
     scored = json.loads(command("reveal", "set.answer", "--study", 1, "--recordings", "set", "--json").stdout)
     truths = [truth["name"] for truth in scored["answer"]["truths"]]

@@ -2,6 +2,7 @@
 
 import importlib
 import json
+import shlex
 from types import SimpleNamespace
 
 import pytest
@@ -9,10 +10,12 @@ import pytest
 from bench.cli.lab import diagnosis_tables, study_tables
 from bench.cli.lab.diagnosis_tables import next_step
 from bench.study.diagnosis import search as search_module
-from bench.study.models.diagnosis import ProvisionalTerm
+from bench.study.models.diagnosis import Diagnosis, EffectClass, Finding, ProvisionalTerm
 from bench.study.report import report as report_module
 from compensator.lab.effects.offered import LeftOut
 from tests.service.recorded_joint import recording_set_zip
+
+OF_A_ROUND = ["extend", "diagnose", "suggest"]
 
 
 def test_from_trials_to_an_error_that_falls(command, tmp_path, monkeypatch):
@@ -111,9 +114,15 @@ def test_what_is_suggested_is_run_added_and_diagnosed(command, monkeypatch):
     motions = ["--waveforms", "slow-sine,multisine", "--loads-kg", "0.05", "--duration-s", 4]
     assert command("run", "excitation", *motions, "--json").exit_code == 0
     assert command("study", "new", "arm", "--experiment", 1, "--json").exit_code == 0
-    shown = command("study", "suggest", 1, "--trials", 1)
+    assert command("study", "new", "to paste", "--experiment", 1, "--json").exit_code == 0
+    shown = command("study", "suggest", 2, "--trials", 1)
     assert shown.exit_code == 0, shown.output
     assert "Trials to record next" in shown.stdout
+    told = shown.stdout.splitlines()
+    pasted = [shlex.split(line)[1:] for line in told[told.index("one by one:") + 1 :] if line.startswith("friction-")]
+    assert [words[:2] for words in pasted] == [["run", "excitation"], *(["study", one] for one in OF_A_ROUND)]
+    for words in pasted[:-1]:
+        assert command(*words).exit_code == 0, words
     started = command("study", "suggest", 1, "--trials", 1, "--start", "--json")
     assert started.exit_code == 0, started.output
     found = json.loads(started.stdout)
@@ -200,14 +209,41 @@ def test_a_search_that_ends_at_a_curve_offers_it_as_its_diagnosis_does(command, 
         ("data-problem", "data-problem", False, "study new NAME --experiment NUMBER --leave-out TRIAL"),
         ("nothing", "nothing", False, "study report 3 --html study-3.html"),
         ("missing", "missing", True, "study report 3 --html study-3.html"),
-        ("nothing", "too-short", False, "study coverage 3"),
-        ("nothing", "unexplained", False, "study coverage 3"),
+        ("nothing", "too-short", False, "study suggest 3"),
+        ("nothing", "unexplained", False, "study suggest 3"),
     ],
 )
 def test_where_no_effect_is_offered_the_next_step_is_a_command(verdict, code, slight, command):
     found = SimpleNamespace(study_id=3, verdict=verdict, conclusion=SimpleNamespace(code=code), slight=slight)
-    found.offered = None
+    found.offered = found.helps = None
+    found.joint = "here"
     assert next_step(found, None) == f"next: friction-bench {command}"
+    found.joint = "elsewhere"
+    assert next_step(found, None) == f"next: friction-bench {command.replace('suggest', 'coverage')}"
+    found.joint = "nowhere"
+    assert "suggest" not in next_step(found, None)
+    assert "coverage" not in next_step(found, None)
+
+
+@pytest.mark.parametrize(("trial", "told"), [("lifts", ["suggest 3"]), (None, [])])
+def test_rivals_of_what_is_offered_may_be_told_apart_first(trial, told):
+    members = EffectClass(effects=["spring", "cogging"], sentence="", separating_trial=trial)
+    found = Diagnosis.model_construct(study_id=3, classes=[members], slight=False, findings=[], joint="here")
+    add, *first = next_step(found, None).splitlines()
+    assert add == "next: friction-bench study add 3 spring"
+    assert first == [f"or tell it from its rivals first: friction-bench study {one}" for one in told]
+
+
+@pytest.mark.parametrize(("joint", "record"), [("here", "suggest 3"), ("elsewhere", "coverage 3"), ("nowhere", None)])
+def test_what_helps_and_may_be_luck_is_added_and_judged_by_what_comes_later(joint, record):
+    noted = Finding(code="helps", values={"effect": "spring"}, text="")
+    found = Diagnosis.model_construct(
+        study_id=3, classes=[], slight=False, provisional=None, findings=[noted], joint=joint
+    )
+    add, *later = next_step(found, None).splitlines()
+    assert add == "next: friction-bench study add 3 spring"
+    judged = [f"friction-bench study {record}", "friction-bench study drop 3 spring"]
+    assert later[1:] == (judged if record else [])
 
 
 def test_every_reason_against_an_effect_and_odd_gains_are_explained_below(monkeypatch, capsys):

@@ -2,6 +2,7 @@
 
 import importlib
 import json
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -15,6 +16,7 @@ from bench.study.create import create_study, describe
 from bench.study.diagnosis import judged
 from bench.study.diagnosis.diagnose import diagnose
 from bench.study.errors import StudyError
+from bench.study.explanation.coverage import coverage
 from bench.study.extend import extend_study
 from bench.study.ladder import ladder
 from bench.study.material import load
@@ -106,7 +108,7 @@ def test_a_suggestion_can_be_started_as_it_is(store, made, found):
     assert found.trials, found.sentence
     assert f"rises from {found.trials[0].before:.1f} to {found.trials[-1].after:.1f}" in found.sentence
     assert found.note == note_for(made.study_id)
-    assert all("predict efforts that differ by" in one.sentence for one in found.trials)
+    assert all(re.match(r"It tells .* from .*: they differ by", one.sentence) for one in found.trials)
     number = run(store, found.trials[0].kind, found.trials[0].parameters, found.note)
     before = diagnose(store, made.study_id, made.model_id)
     extended = extend_study(store, made.study_id)
@@ -140,11 +142,39 @@ def test_a_simulated_joint_which_repeats_its_samples_is_not_asked_for_the_same_t
     assert first.name not in [one.name for one in again.trials]
 
 
-@pytest.mark.parametrize(("promised", "told"), [(5.5, "to at least 4.0 for nine in ten"), (0.0, "that is no promise")])
+@pytest.mark.parametrize(("promised", "told"), [(5.5, "to at least 4.0 in nine of ten"), (0.0, "That is no promise")])
 def test_a_suggestion_says_what_of_its_prediction_is_promised(promised, told):
     pairs = (Pair("spring", None, 1.0, 7.0, 9.0, 4.0, promised), Pair("spring", "cogging", 1.5, 8.0, 9.0, 4.0, 4.0))
     pick = Pick("one", 0.5, 1.0, 7.0, ("spring", None), 0.01)
-    assert told in SUGGEST._sentence(Suggestion(pairs, (), (pick,), 0.01), SimpleNamespace(verdict="missing"))
+    assert told in SUGGEST._sentence(Suggestion(pairs, (), (pick,), 0.01), says("missing", "spring"))
+
+
+def says(verdict, *names):
+    return SimpleNamespace(verdict=verdict, classes=[names], too_short=False)
+
+
+@pytest.mark.parametrize(("names", "told"), [(["spring"], True), (["spring", "cogging"], False)])
+def test_what_a_diagnosis_names_alone_is_named_in_a_suggestion_too(names, told):
+    pick = Pick("one", 0.5, 1.0, 7.0, ("spring", None), 0.01)
+    found = Suggestion((Pair("spring", "cogging", 1.0, 7.0, 9.0, 4.0, 6.0),), (), (pick,), 0.01)
+    assert ("What is named gets surer" in SUGGEST._sentence(found, says("missing", *names))) == told
+
+
+def test_trials_that_are_too_short_to_tell_have_no_rivals(store):
+    number = run(store, "excitation", {**MOTIONS, "loads_kg": [0.05], "waveforms": ["slow-sine"]})
+    study = create_study(store, "short", [number]).study_id
+    short = diagnose(store, study)
+    assert short.conclusion.code == "too-short"
+    assert "few-trials" in [one.code for one in short.findings]
+    found = suggest(store, study, CONFIGURATION, trials=1)
+    assert found.trials
+    assert found.sentence.startswith("Record this trial (")
+    assert found.pairs == []
+    assert "d'" not in found.sentence
+    told = coverage(store, study)
+    assert told.sentence == short.sentence
+    assert [one.code for one in told.findings] == ["few-trials"]
+    assert not {"judgeable", "confounded"} & {one.standing for one in told.effects}
 
 
 def test_a_pair_that_no_trial_tells_apart_is_listed_once():
@@ -152,17 +182,17 @@ def test_a_pair_that_no_trial_tells_apart_is_listed_once():
         Pair("spring", "cogging", 0.1, 0.1, 0.2, 0.1, 0.0), Pair("cogging", "spring", 0.1, 0.1, 0.2, 0.1, 0.0),
         Pair("cogging", None, 0.1, 0.1, 0.2, 0.1, 0.0),
     )  # fmt: skip
-    told = SUGGEST._sentence(Suggestion((), pairs, (), 0.01), SimpleNamespace(verdict="missing"))
-    assert told.endswith("Spring or cable torque and Cogging; Cogging and no missing effect.")
+    told = SUGGEST._sentence(Suggestion((), pairs, (), 0.01), says("missing"))
+    assert told.endswith("spring or cable torque and cogging; cogging and no effect.")
 
 
 @pytest.mark.parametrize(("verdict", "supposes"), [("nothing", True), ("missing", False)])
 def test_where_nothing_is_sure_a_suggestion_says_what_it_supposes(verdict, supposes):
     pairs = (Pair("spring", None, 1.0, 7.0, 9.0, 4.0, 6.0), Pair("cogging", "spring", 1.5, 8.0, 9.0, 4.0, 0.0))
     pick = Pick("one", 0.5, 1.0, 7.0, ("spring", None), 0.01)
-    told = SUGGEST._sentence(Suggestion(pairs, (), (pick,), 0.01), SimpleNamespace(verdict=verdict))
+    told = SUGGEST._sentence(Suggestion(pairs, (), (pick,), 0.01), says(verdict, "spring"))
     assert "rises from 1.0 to 7.0" in told
-    assert ("That holds if one of Spring or cable torque and Cogging is missing" in told) == supposes
+    assert ("It supposes that one of spring or cable torque and cogging is missing" in told) == supposes
 
 
 @pytest.mark.parametrize(("now", "told"), [(2.4, True), (5.9, False)])

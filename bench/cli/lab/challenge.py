@@ -1,6 +1,7 @@
 """`friction-bench challenge` and `reveal`: recordings that hide something, and the answer."""
 
 import secrets
+import shlex
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -54,7 +55,8 @@ def challenge(
     sealed = write_challenge(secrets.randbits(64) if seed is None else seed, difficulty.value, output)
     say(f"recordings: {output}")
     say(f"sealed answer: {sealed}")
-    say(f"next: friction-bench import {output}, make a study of it, then friction-bench reveal {sealed} --study STUDY")
+    say(f"next: friction-bench import {shlex.quote(str(output))}")
+    say(f"at last, with the number of its study: friction-bench reveal {shlex.quote(str(sealed))} --study STUDY")
 
 
 def reveal(

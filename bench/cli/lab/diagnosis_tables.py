@@ -1,9 +1,11 @@
 """What the `study` commands print of diagnoses, and of what is to be recorded next."""
 
+import shlex
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from bench.cli.output import percent, say, table, text
+from bench.json_types import as_option
 from compensator.lab.chance import chance_cell
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
@@ -25,7 +27,7 @@ def diagnosis(found: "Diagnosis") -> None:
     for members in found.classes:
         say(members.sentence)
         if members.separating_trial:
-            say(f"  to tell them apart: {members.separating_trial}")
+            say(f"  to tell them apart, record: {members.separating_trial}")
     _ranking(found.ranking)
     if found.provisional:
         say(found.provisional.sentence)
@@ -71,21 +73,34 @@ def why_not_named(ranking: Sequence["Ranked"]) -> list[str]:
     return [*told, f"no evidence (score not above 0): {', '.join(others)}"] if others else told
 
 
-def next_step(found: "Diagnosis | Searched", model_id: int | None) -> str:
-    """What to do after a diagnosis or a search, on one line: add what is offered, mend the data, keep, or record more.
+def next_step(found: "Diagnosis", model_id: int | None) -> str:
+    """What to do after a diagnosis or a search: add what is offered or helps, mend the data, keep, or record more.
 
     Args:
-        found: the diagnosis, or the search with what its last model lacks.
+        found: the diagnosis, of a search that of its last model.
         model_id: the model that was asked for; None: the newest.
     """
-    if found.offered:
+    if one := found.offered or found.helps:
         beside = "" if model_id is None else f" --model {model_id}"
-        return f"next: friction-bench study add {found.study_id} {found.offered}{beside}"
+        add = f"next: friction-bench study add {found.study_id} {one}{beside}"
+        if found.offered and any(members.separating_trial for members in found.classes):
+            return f"{add}\nor tell it from its rivals first: {_more(found)}"
+        if found.offered or found.joint == "nowhere":
+            return add
+        return (
+            f"{add}\nIt may be luck: record more, and keep it if dropping it does harm then:\n{_more(found)}\n"
+            f"friction-bench study drop {found.study_id} {one}"
+        )
     if found.verdict == "data-problem":
         return "next: friction-bench study new NAME --experiment NUMBER --leave-out TRIAL"
-    if found.slight or found.conclusion.code in ("nothing", "not-confirmed"):
+    if found.slight or found.joint == "nowhere" or found.conclusion.code in ("nothing", "not-confirmed"):
         return f"next: friction-bench study report {found.study_id} --html study-{found.study_id}.html"
-    return f"next: friction-bench study coverage {found.study_id}"
+    return f"next: {_more(found)}"
+
+
+def _more(found: "Diagnosis") -> str:
+    """The command that says which trials to record next: of this bench, or of any."""
+    return f"friction-bench study {'suggest' if found.joint == 'here' else 'coverage'} {found.study_id}"
 
 
 def search(found: "Searched") -> None:
@@ -93,6 +108,8 @@ def search(found: "Searched") -> None:
     for step in found.steps:
         say(step.sentence)
     say(found.sentence)
+    for one in found.findings:
+        say(one.text)
 
 
 def not_judged(last: "Diagnosis", model_id: int | None) -> str:
@@ -130,6 +147,26 @@ def suggestion(found: "Suggested") -> None:
     if pairs:
         columns = ["truth", "rival", "now#", "then#", "nine in ten#"]
         table("If the truth is one, predicted d' against the other", columns, pairs)
+
+
+def commands(found: "Suggested") -> list[str]:
+    """What records the trials that are suggested one by one, adds them and diagnoses; and what does all of it."""
+    if not found.trials:
+        return []
+    note = shlex.quote(found.note)
+    return [
+        "one by one:",
+        *(f"friction-bench run {one.kind} {_options(one.parameters)} --note {note}" for one in found.trials),
+        f"friction-bench study extend {found.study_id}",
+        f"friction-bench study diagnose {found.study_id}",
+        "or all of it at once, the joint moves:",
+        f"friction-bench study suggest {found.study_id} --trials {len(found.trials)} --start",
+    ]
+
+
+def _options(parameters: "Json") -> str:
+    values = ((name.replace("_", "-"), shlex.quote(as_option(value))) for name, value in parameters.items())
+    return " ".join(f"--{name} {value}" for name, value in values)
 
 
 def not_settled(found: "Diagnosis", trials: int) -> str:

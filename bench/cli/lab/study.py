@@ -231,7 +231,7 @@ def search_command(
     diagnosis_tables.search(found)
     if unjudged := diagnosis_tables.not_judged(last, of_model):
         say(session.in_full(unjudged))
-    say(session.in_full(diagnosis_tables.next_step(found, of_model)))
+    say(session.in_full(diagnosis_tables.next_step(last, of_model)))
 
 
 @app.command("suggest")
@@ -254,11 +254,16 @@ def suggest_command(
     if start:
         carry_out_all(session_of(context), study, model, trials, at_once, as_json)
         return
-    found = suggested(session_of(context), study, model, trials)
+    session = session_of(context)
+    found = suggested(session, study, model, trials)
     if queue:
-        queue_all(session_of(context), found, url, as_json)
+        queue_all(session, found, url, as_json)
+    elif as_json:
+        print_json(found)
     else:
-        print_json(found) if as_json else diagnosis_tables.suggestion(found)
+        diagnosis_tables.suggestion(found)
+        for line in diagnosis_tables.commands(found):
+            say(session.in_full(line))
 
 
 @app.command("extend")

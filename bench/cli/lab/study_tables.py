@@ -61,8 +61,11 @@ def coverage(found: "Coverage") -> None:
     columns = ["effect", "these trials", "why", "looks like", "shows from, of the effort#"]
     table("Effects beside the model", columns, effects)
     trials = [(one.trial, len(one.effects) or "all", ", ".join(one.effects)) for one in found.advice]
-    table("What would help", ["trial", "opens#", "effects"], trials)
+    if trials:
+        table("What would help", ["trial", "opens#", "effects"], trials)
     say(found.sentence)
+    for one in found.findings:
+        say(one.text)
 
 
 def _parameters(title: str, found: Sequence["FittedParameter"]) -> None:

@@ -194,4 +194,5 @@ def queue_all(session: BenchSession, found: Suggested, url: str, as_json: bool) 
         return
     tables.suggestion(found)
     if items:
-        say(f"{len(items)} items are in the queue; when they are done: friction-bench study extend {found.study_id}")
+        told = f"{len(items)} items are in the queue; when they are done: friction-bench study extend {found.study_id}"
+        say(session.in_full(told))

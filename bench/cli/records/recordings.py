@@ -114,6 +114,8 @@ def import_(
     for note in recording_set.notes:
         say(note)
     say(f"imported as experiment {experiment_id}: {trials} trials, {rows} rows")
+    called = shlex.quote(name or recording_set.name)
+    say(session_of(context).in_full(f"next: friction-bench study new {called} --experiment {experiment_id}"))
 
 
 def _guess(session: BenchSession, paths: list[Path], rig: Path | None, known: "Known", mapping_file: Path) -> None:

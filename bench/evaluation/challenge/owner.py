@@ -4,13 +4,12 @@ from collections.abc import Mapping
 from math import floor, log10
 
 from bench.config.configuration import BenchConfiguration, parse_configuration
-from bench.config.rig import Rig
+from bench.config.rig import CHALLENGE, Rig
 from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.evaluation.challenge.hidden_plant import DrawnPlant
 from bench.json_types import Value
 
 BANDWIDTH_RAD_S = 28.0  # of the position servo: stiff enough for the motions, far below the sampling rate
-RIG_NAME = "unknown joint"
 PERIOD_S = 0.005
 
 
@@ -24,7 +23,7 @@ def rig_of(drawn: DrawnPlant) -> Rig:
     constant = _sheet(motor, "torque_constant_n_m_a", off)
     return Rig.model_validate(
         {
-            "name": RIG_NAME,
+            "name": CHALLENGE,
             "motor": {
                 "resistance_ohm": _sheet(motor, "resistance_ohm", off),
                 "torque_constant_n_m_a": constant,
@@ -62,7 +61,7 @@ def bench_of(drawn: DrawnPlant, seed: int, without: str | None = None) -> BenchC
     stiffness = BANDWIDTH_RAD_S**2 * joint.inertia_kg_m2 / torque_per_a
     drive = SimulatedDriveSettings(seed=seed, plant=drawn.tables(without))
     values: dict[str, Value] = {
-        "name": RIG_NAME,
+        "name": CHALLENGE,
         "rig": rig.model_dump(mode="json", exclude_none=True),
         "drive": drive.model_dump(mode="json"),
         "control": {"period_s": PERIOD_S},

@@ -4,11 +4,12 @@ from math import inf, isfinite
 
 from bench.store import Store
 from bench.store.records import ModelRow
-from bench.study.diagnosis.findings import conclusion_of, findings_of, not_judged
+from bench.study.diagnosis.findings import conclusion_of, findings_of, findings_of_trials
 from bench.study.diagnosis.judged import diagnosis_of_model
+from bench.study.joint import joint_of
 from bench.study.keep import kept_of
 from bench.study.material import load_model
-from bench.study.models.diagnosis import Diagnosis, EffectClass, Picture, ProvisionalTerm, Ranked
+from bench.study.models.diagnosis import Diagnosis, EffectClass, Joint, Picture, ProvisionalTerm, Ranked
 from compensator.lab.chance import stated
 from compensator.lab.diagnosis import diagnosis
 from compensator.lab.diagnosis.confirmation import doubts, explained_part, slight_one
@@ -28,10 +29,13 @@ def diagnose(store: Store, study_id: int, model_id: int | None = None) -> Diagno
     """
     material, model = load_model(store, study_id, model_id)
     fit = material.fit_of(model)
-    return answer_of(fit, diagnosis_of_model(material, model, fit), study_id, model.id, explained_by(store, model))
+    found, joint = diagnosis_of_model(material, model, fit), joint_of(store, material.definition)
+    return answer_of(fit, found, study_id, model.id, explained_by(store, model), joint)
 
 
-def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int, explained: float = 0.0) -> Diagnosis:
+def answer_of(
+    fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int, explained: float = 0.0, joint: Joint = "here"
+) -> Diagnosis:
     """What a model of a study may be missing, given its fit and diagnosis.
 
     Args:
@@ -40,9 +44,10 @@ def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int
         study_id: of the answer.
         model_id: of the answer.
         explained: by effects that were added to the first model, root mean square as a share of the effort, held out.
+        joint: where it is.
     """
     named = set(found.classes[0]) if found.verdict == "missing" and found.classes else set()
-    not_told = [not_judged(effect, reason) for effect, reason in found.left_out.items()]
+    findings = [*findings_of_trials(fit, joint), *findings_of(found)]
     advice = _advice(found, explained)
     curve = provisional(fit, found)
     first = curve.effect.name if curve is not None else next(iter(found.classes[0]), "") if named else ""
@@ -52,15 +57,18 @@ def answer_of(fit: Fit, found: diagnosis.Diagnosis, study_id: int, model_id: int
         verdict=found.verdict,
         sentence=found.sentence,
         p_value=stated(found.p_value),
-        notes=[*(note.text for note in found.notes), *(one.text for one in not_told)],
+        notes=[one.text for one in findings if one.code != "data-problem"],
         data_problems=found.data_problems,
-        classes=[_class(members, _has_hidden_rival(members, fit, found)) for members in found.classes[:1] if named],
+        classes=[
+            _class(members, _has_hidden_rival(members, fit, found), joint) for members in found.classes[:1] if named
+        ],
         ranking=[] if found.too_short else _ranking(fit.dataset, found, named, first),
         slight=bool(advice),
         advice=advice,
         provisional=None if curve is None else _provisional(fit.dataset, curve),
         conclusion=conclusion_of(found),
-        findings=findings_of(found),
+        findings=findings,
+        joint=joint,
     )
 
 
@@ -113,15 +121,16 @@ def _has_hidden_rival(members: tuple[str, ...], fit: Fit, found: diagnosis.Diagn
     return any(set(members) & set(one.confused_with) for one in hidden)
 
 
-def _class(members: tuple[str, ...], hidden_rival: bool) -> EffectClass:
+def _class(members: tuple[str, ...], hidden_rival: bool, joint: Joint) -> EffectClass:
     titles = [effect_named(name).title for name in members]
     if len(members) == 1:
         among = " among what these trials can judge" if hidden_rival else ""
         return EffectClass(effects=list(members), sentence=f"{titles[0]} stands alone{among}.", separating_trial=None)
+    apart = "; ".join(dict.fromkeys(effect_named(name).excited_by for name in members))
     return EffectClass(
         effects=list(members),
         sentence=f"These trials cannot tell apart: {'; '.join(titles)}.",
-        separating_trial="; ".join(dict.fromkeys(effect_named(name).excited_by for name in members)),
+        separating_trial=apart if joint != "nowhere" else None,
     )
 
 

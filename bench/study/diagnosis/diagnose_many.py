@@ -9,8 +9,9 @@ from bench.store.records import ModelRow
 from bench.study.diagnosis.diagnose import answer_of, explained_by
 from bench.study.diagnosis.judged import diagnosis_of_model
 from bench.study.errors import StudyError, lab_errors
+from bench.study.joint import joint_of
 from bench.study.material import Definition, Material, model_of, trials_of
-from bench.study.models.diagnosis import Diagnosis, NotDiagnosed
+from bench.study.models.diagnosis import Diagnosis, Joint, NotDiagnosed
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
@@ -28,6 +29,7 @@ class Question:
     definition: Definition
     recordings: list[Recording]
     explained: float  # by effects that were added, see `answer_of`
+    joint: Joint
 
 
 def diagnose_many(
@@ -67,7 +69,8 @@ def answer_to(question: Question) -> Diagnosis | NotDiagnosed:
             )
         material = Material(question.study_id, "", definition, (), dataset)
         fit = material.fit_of(model)
-        return answer_of(fit, diagnosis_of_model(material, model, fit), question.study_id, model.id, question.explained)
+        found = diagnosis_of_model(material, model, fit)
+        return answer_of(fit, found, question.study_id, model.id, question.explained, question.joint)
     except StudyError as error:
         return NotDiagnosed(study_id=question.study_id, model_id=model.id, error=str(error))
 
@@ -78,4 +81,5 @@ def _questions(store: Store, study_ids: Sequence[int]) -> Iterator[Question]:
         model = model_of(store, study_id, None)
         definition = trials_of(model, Definition.from_json(store.study(study_id).definition))
         recordings = [store.recording(trial) for trial in definition.trial_ids]
-        yield Question(study_id, model, definition, recordings, explained_by(store, model))
+        joint = joint_of(store, definition)
+        yield Question(study_id, model, definition, recordings, explained_by(store, model), joint)

@@ -2,12 +2,16 @@
 
 from collections.abc import Sequence
 
-from bench.study.models.diagnosis import Conclusion, ConclusionCode, Finding, Ranked, Value
+from bench.study.models.diagnosis import Conclusion, ConclusionCode, Finding, FindingCode, Joint, Ranked, Value
 from compensator.lab.chance import SIGNIFICANT, stated
 from compensator.lab.diagnosis.confirmation import nearest_one
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain
+from compensator.lab.model.validation import few_trials
+
+RECORDED_ONCE = "This joint was drawn for a challenge and recorded once: what would take further trials cannot be had."
 
 
 def conclusion_of(found: Diagnosis) -> Conclusion:
@@ -24,6 +28,15 @@ def findings_of(found: Diagnosis) -> list[Finding]:
         *(Finding(code=note.code, values=dict(note.values), text=note.text) for note in found.notes),
         *(not_judged(effect, reason) for effect, reason in found.left_out.items()),
     ]
+
+
+def findings_of_trials(fit: Fit, joint: Joint) -> list[Finding]:
+    """What stands beside every answer on these trials: too few to leave one out, or of a joint recorded once."""
+    told: dict[FindingCode, str] = {
+        "few-trials": few_trials(fit),
+        "recorded-once": RECORDED_ONCE if joint == "nowhere" else "",
+    }
+    return [Finding(code=code, values={}, text=text) for code, text in told.items() if text]
 
 
 def not_judged(effect: str, reason: str) -> Finding:

@@ -2,8 +2,10 @@
 
 from bench.store import Store
 from bench.study.diagnosis.diagnose import answer_of, explained_by, outset_of
+from bench.study.diagnosis.findings import findings_of_trials
 from bench.study.diagnosis.judged import diagnosis_of_model
 from bench.study.errors import lab_errors
+from bench.study.joint import joint_of
 from bench.study.keep import kept_of, result_of, stored
 from bench.study.material import load, model_of
 from bench.study.models.change import Searched, SearchStep
@@ -62,7 +64,8 @@ def _searched(store: Store, study_id: int, model_id: int | None, most: int) -> t
             )
         )
         parent, before = child, step.held_out.relative
-    last = answer_of(found.fit, found.last, study_id, parent, explained_by(store, model_of(store, study_id, parent)))
+    explained, joint = explained_by(store, model_of(store, study_id, parent)), joint_of(store, material.definition)
+    last = answer_of(found.fit, found.last, study_id, parent, explained, joint)
     searched = Searched(
         study_id=study_id,
         model_id=parent,
@@ -73,6 +76,7 @@ def _searched(store: Store, study_id: int, model_id: int | None, most: int) -> t
         offered=last.offered,
         slight=last.slight,
         sentence=last.advice if last.slight else last.sentence,
+        findings=findings_of_trials(found.fit, joint),
     )
     return searched, last
 

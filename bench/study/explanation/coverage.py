@@ -4,14 +4,18 @@ from collections.abc import Iterator, Sequence
 from math import pi
 
 from bench.store import Store
+from bench.study.diagnosis.findings import findings_of_trials
 from bench.study.errors import lab_errors
+from bench.study.joint import joint_of
 from bench.study.material import load_model
 from bench.study.models.coverage import Advice, Coverage, Held, JudgedEffect
 from compensator.lab.at_rest.breakaway_rows import FEWEST_STARTS, breakaway_rows, starts_counted
-from compensator.lab.comparison.judgeable import Judgeable, judgeable
+from compensator.lab.comparison.judgeable import Judgeable, judgeable, stretches_of
+from compensator.lab.diagnosis.wording import too_short_in_words
 from compensator.lab.effects.effect import Effect
 from compensator.lab.rows import coverage as lab
 from compensator.lab.rows.dataset import Dataset
+from compensator.lab.screening.evidence import too_few_stretches
 
 WIDE = 5.0  # between the slow and the fast: fewer, and friction over speed is a line whatever it is
 FEWEST_LOADS = 3  # to tell a line from a curve
@@ -40,19 +44,27 @@ def coverage(store: Store, study_id: int, model_id: int | None = None) -> Covera
         fit = material.fit_of(model)
         found, effects, starts = lab.coverage_of(fit.dataset), judgeable(fit), starts_counted(breakaway_rows(fit))
     held = list(_held(found, fit.dataset, len(material.definition.too_short), effects, starts))
-    advice = _advice(found, effects, starts)
-    count = {name: sum(one.standing == name for one in effects) for name in ("judgeable", "confounded")}
-    best = f" What would help most: {advice[0].trial}." if advice else ""
+    joint = joint_of(store, material.definition)
+    advice = [] if joint == "nowhere" else _advice(found, effects, starts)
+    stretches = stretches_of(fit)
     return Coverage(
         study_id=study_id,
         model_id=model.id,
         held=held,
         effects=[_judged(one) for one in effects],
         advice=advice,
-        sentence=(
-            f"Of {len(effects)} effects that the model does not have, these trials can show {count['judgeable']} by "
-            f"themselves and {count['confounded']} only together with others that look alike.{best}"
-        ),
+        sentence=too_short_in_words(stretches) if too_few_stretches(stretches) else _sentence(effects, advice),
+        findings=findings_of_trials(fit, joint),
+    )
+
+
+def _sentence(effects: Sequence[Judgeable], advice: Sequence[Advice]) -> str:
+    count = {name: sum(one.standing == name for one in effects) for name in ("judgeable", "confounded")}
+    best = f" What would help most: {advice[0].trial}." if advice else ""
+    return (
+        f"Of {len(effects)} effects that the model does not have, these trials can show {count['judgeable']} by "
+        f"themselves and {count['confounded']} only together with others that look alike, as far as their motion "
+        f"alone can tell.{best}"
     )
 
 

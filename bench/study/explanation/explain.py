@@ -160,7 +160,7 @@ def explain(
         *([diagnosis_section("What is left", last, now)] if model_id != first else []),
         residual_section(before, now),
         model_section(now),
-        advice_section(told, _separating(missing, last)),
+        *([advice_section(told, _separating(missing, last))] if last.joint != "nowhere" else []),
         provenance_section(study, store),
     ]
     head, *rest = in_words([head, *sections], [one.name for one in study.trials])

@@ -10,7 +10,7 @@ from pydantic import Field
 from bench.json_types import Number
 from bench.study.models.base import StudyModel
 from bench.study.models.comparison import FittedParameter
-from bench.study.models.diagnosis import Conclusion
+from bench.study.models.diagnosis import Conclusion, Finding
 
 
 class BeforeAfter(StudyModel):
@@ -85,3 +85,4 @@ class Searched(StudyModel):
     )
     slight: bool = Field(description="what its last model lacks by the verdict is slight, and was not added")
     sentence: str
+    findings: list[Finding] = Field(description="what holds for any answer on these trials: too few, or recorded once")

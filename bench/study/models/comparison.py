@@ -6,6 +6,7 @@ from pydantic import Field
 
 from bench.json_types import Number, Numbers
 from bench.study.models.base import LEAST_P, EffortName, StudyModel
+from bench.study.models.diagnosis import Finding
 from bench.study.models.study import StudyTrial
 
 
@@ -130,4 +131,5 @@ class Comparison(StudyModel):
     breakaway: BreakawayError | None = Field(description="null: too few starts from rest in these trials")
     series: list[Series]
     residual_against: list[ResidualAgainst]
-    notes: list[str]
+    notes: list[str] = Field(description="sentences; `findings` has some with their codes")
+    findings: list[Finding] = Field(description="what holds for any answer on these trials: too few, or recorded once")

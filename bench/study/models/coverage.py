@@ -6,6 +6,7 @@ from pydantic import Field
 
 from bench.json_types import Number
 from bench.study.models.base import StudyModel
+from bench.study.models.diagnosis import Finding
 
 
 class Held(StudyModel):
@@ -43,6 +44,7 @@ class Coverage(StudyModel):
     effects: list[JudgedEffect]
     advice: list[Advice] = Field(description="the trial that opens most effects first")
     sentence: str
+    findings: list[Finding] = Field(description="what holds for any answer on these trials: too few, or recorded once")
 
 
 class Checked(StudyModel):

@@ -12,7 +12,8 @@ Verdict = Literal["missing", "nothing", "unknown-effect", "data-problem"]
 ConclusionCode = Literal[
     "missing", "likely", "nothing", "not-confirmed", "too-short", "unexplained", "unknown-effect", "data-problem"
 ]
-FindingCode = NoteCode | Literal["data-problem", "not-judged"]
+FindingCode = NoteCode | Literal["data-problem", "few-trials", "not-judged", "recorded-once"]
+Joint = Literal["here", "elsewhere", "nowhere"]
 Value = float | str | bool
 ORDER = "those named, then those confirmed by their own numbers, then by score"
 
@@ -131,6 +132,10 @@ class Diagnosis(StudyModel):
     )
     advice: str = Field(description="what that means, in a sentence; empty where it is not slight")
     provisional: ProvisionalTerm | None = Field(description="null unless the verdict is unknown-effect")
+    joint: Joint = Field(
+        description="where more can be recorded: on a bench of this store, where the recordings were imported from, or "
+        "nowhere, of the joint of a challenge"
+    )
     conclusion: Conclusion
     findings: list[Finding] = Field(
         description="all that stands beside the answer, each once: problems of the data, notes, effects not judged"
@@ -142,6 +147,11 @@ class Diagnosis(StudyModel):
         if self.classes and not self.slight:
             return self.classes[0].effects[0]
         return self.provisional.effect if self.provisional else None
+
+    @property
+    def helps(self) -> str | None:
+        """The effect that lowers the held-out error for sure, and may be luck; None where there is none."""
+        return next((str(one.values["effect"]) for one in self.findings if one.code == "helps"), None)
 
 
 class NotDiagnosed(StudyModel):

@@ -9,6 +9,7 @@ from bench.store import Experiment, Store
 from bench.store.records import ModelRow
 from bench.study.diagnosis.judged import diagnosis_of_model
 from bench.study.errors import StudyError, lab_errors
+from bench.study.joint import joint_of
 from bench.study.material import Material, facts_of, load_model
 from bench.study.models.stages import DIAGNOSING, FITTING, SUGGESTION
 from bench.study.models.study import note_for
@@ -21,7 +22,7 @@ from bench.study.suggestion.suggested import KeptOut, PairOfRivals, Suggested, S
 from compensator.lab import progress
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.next_trial.confounded import shows_from_rest
+from compensator.lab.next_trial.confounded import several, shows_from_rest
 from compensator.lab.next_trial.suggestion import Pick, Suggestion
 
 MOST_TRIALS = 6
@@ -57,11 +58,16 @@ def suggest(
             cannot be computed.
     """
     material, model = load_model(store, study_id, model_id)
+    if joint_of(store, material.definition) == "nowhere":
+        raise StudyError(
+            f"study {study_id} is of a challenge: its joint was drawn at random and recorded once, and no trial of it "
+            "can be recorded again. Guess by what these recordings tell"
+        )
     if facts_of(configuration.rig) != material.definition.facts:
         raise StudyError(
-            f"study {study_id} is of another rig than this bench, '{configuration.rig.name}'; name the configuration "
-            "of its bench with --config. Of recordings that were imported from elsewhere, "
-            f"'friction-bench study coverage {study_id}' says under 'What would help' what to record next"
+            f"study {study_id} is of another rig than this bench, '{configuration.rig.name}'. Name the configuration "
+            "of its bench with --config. Where you have none, record what this says under 'What would help': "
+            f"friction-bench study coverage {study_id}"
         )
     configuration = with_friction(store, configuration)
     progress.enter(FITTING)
@@ -86,7 +92,7 @@ def suggest(
         sentence=" ".join(filter(None, (told_of_before, _sentence(found, diagnosis)))),
         minutes=sum(pick.minutes for pick in found.picks),
         note=note_for(study_id),
-        pairs=list(map(PairOfRivals.model_validate, found.pairs)),
+        pairs=[] if diagnosis.too_short else list(map(PairOfRivals.model_validate, found.pairs)),
         hopeless=list(map(PairOfRivals.model_validate, found.hopeless)),
         kept_out=[_kept_out(one) for one in impossible],
         trials=[_pick(pick, choice, found, material) for pick, choice in zip(found.picks, chosen, strict=True)],
@@ -140,26 +146,33 @@ def _pick(pick: Pick, choice: Choice, found: Suggestion, material: Material) -> 
         before=pick.before,
         after=pick.after,
         sentence=(
-            f"{_names(*pick.pair)} predict efforts that differ by {pick.difference:.3g} {unit} there; the noise is "
-            f"{found.noise:.3g} {unit}."
+            f"It tells {_names(*pick.pair, ' from ')}: they differ by {pick.difference:.3g} {unit} there, and the "
+            f"noise is {found.noise:.3g} {unit}."
         ),
     )
 
 
-def _names(true: str, rival: str | None) -> str:
-    return f"{effect_named(true).title} and {'no missing effect' if rival is None else effect_named(rival).title}"
+def _names(true: str, rival: str | None, between: str = " and ") -> str:
+    other = "no effect" if rival is None else effect_named(rival).in_sentence
+    return f"{effect_named(true).in_sentence}{between}{other}"
 
 
 def _sentence(found: Suggestion, diagnosis: Diagnosis) -> str:
     if not found.pairs:
+        if not found.hopeless:
+            return "No further trial is needed: nothing else could be what is named."
         return "No trial that this bench can run tells the rivals apart. " + _hopeless(found)
     before, after = min(pair.before for pair in found.pairs), min(pair.after for pair in found.pairs)
     if not found.picks:
         return f"No further trial is needed, or helps: the smallest predicted d' is {before:.1f}. " + _hopeless(found)
-    minutes = sum(pick.minutes for pick in found.picks)
+    minutes, count = sum(pick.minutes for pick in found.picks), len(found.picks)
+    record = f"Record {'this trial' if count == 1 else f'these {count} trials'} ({minutes:.2g} min)"
+    if diagnosis.too_short:
+        return f"{record}, and diagnose again: there the joint moves as it has not moved yet."
+    named = diagnosis.verdict == "missing" and not several(diagnosis)
     return (
-        f"{len(found.picks)} trial{'s' * (len(found.picks) != 1)}, {minutes:.2g} min: the smallest predicted d' rises "
-        f"from {before:.1f} to {after:.1f}, {_promise(found)}; from about 6 on a name is sure. "
+        f"{record}. {'What is named gets surer. ' * named}The smallest d' between two names rises from "
+        f"{before:.1f} to {after:.1f}: that is predicted. From about 6 on a name is sure. {_promise(found)} "
         + _condition(found, diagnosis)
         + _hopeless(found)
     ).strip()
@@ -169,17 +182,17 @@ def _promise(found: Suggestion) -> str:
     """What of the prediction holds for nine in ten of the sizes that the rivals may have."""
     least = min(pair.promised for pair in found.pairs)
     if least > 0.0:
-        return f"to at least {least:.1f} for nine in ten of the sizes that these trials leave the rivals"
-    return "that is no promise, since what speaks for the rivals may be chance"
+        return f"It rises to at least {least:.1f} in nine of ten cases."
+    return "That is no promise: what speaks for these names may be chance."
 
 
 def _condition(found: Suggestion, diagnosis: Diagnosis) -> str:
     """What the prediction holds for, where nothing is sure to be missing: sizes that may be noise."""
     if diagnosis.verdict == "missing":
         return ""
-    rivals = [effect_named(name).title for name in dict.fromkeys(pair.true for pair in found.pairs)]
+    rivals = [effect_named(name).in_sentence for name in dict.fromkeys(pair.true for pair in found.pairs)]
     one_of = rivals[0] if len(rivals) == 1 else f"one of {', '.join(rivals[:-1])} and {rivals[-1]}"
-    return f"That holds if {one_of} is missing and as large as it seems, which is not sure; if not, they tell so. "
+    return f"It supposes that {one_of} is missing, and as large as it seems. If not, the trials show that. "
 
 
 def _hopeless(found: Suggestion) -> str:

@@ -12,7 +12,7 @@ from compensator.lab.model.linear import solve_without
 from compensator.lab.model.prediction import beyond_tangent
 from compensator.lab.model.weights import weights_of
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
-from compensator.lab.rows.dataset import RowChoice
+from compensator.lab.rows.dataset import BLOCK_S, RowChoice
 
 UNDETERMINED = 1e-9  # share of what all trials tell of a coefficient below which the others know nothing of it
 FEWEST_TRIALS = 4  # fewer cannot be resampled or left out one by one
@@ -32,6 +32,13 @@ def held_out(fit: Fit, rows: RowChoice | None = None) -> HeldOut:
     if choice not in fit.judged:
         fit.judged[choice] = _held_out(fit, fit.dataset.in_regimes(choice))
     return fit.judged[choice]
+
+
+def few_trials(fit: Fit) -> str:
+    """What the held-out error of a fit is worth where its trials are too few; empty where they are not."""
+    if held_out(fit).kind != "leave-one-block-out":
+        return ""
+    return f"Too few trials to hold one out: stretches of {BLOCK_S:g} s are left out instead, which flatters the model."
 
 
 def _held_out(fit: Fit, judged: BoolArray) -> HeldOut:

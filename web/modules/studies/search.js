@@ -19,6 +19,7 @@ export function searchButton(place, path, model_id, done) {
 
 function told(place, found) {
   replace(place, h("div", { class: "good", role: "status" }, found.steps.length ? `${found.steps.length} steps. ${spoken(found.sentence)}` : spoken(found.sentence)),
+    found.findings.map(({ text }) => h("p", { class: "soft" }, text)),
     found.steps.length > 0 && table("Steps of the search", [
       { title: "Step", cell: (step) => spoken(step.sentence) },
       { title: "Held-out before", number: true, cell: (step) => percent(step.before) },
