@@ -95,7 +95,7 @@ class Noise:
             if variance := likeliest_variance(effect.columns(), left, power):
                 learnt = replace(effect, variance=variance)
                 covariances = [(rows, one + learnt.covariance(rows)) for rows, one in covariances]
-        stretches = dataset.stretches(rows)
+        stretches = len(np.unique(dataset.block_index[rows]))
         roots = tuple((rows, np.linalg.cholesky(one).astype(np.float64)) for rows, one in covariances)
         return cls(max(stretches - 1, 1), roots)
 
