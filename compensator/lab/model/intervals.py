@@ -7,7 +7,8 @@ from scipy.special import stdtrit
 
 from compensator.lab.effects.effect import shape_parameters
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.linear import solve_without
+from compensator.lab.model.linear import Bounds, solve_without
+from compensator.lab.model.tangents import tangents
 from compensator.lab.model.validation import independent_units
 from compensator.lab.recordings.recording import FloatArray
 
@@ -81,26 +82,39 @@ def _half_widths(fit: Fit) -> FloatArray:
 
 
 def standard_errors(fit: Fit) -> tuple[FloatArray, int]:
-    """Of all coefficients, shape (K,), NaN where they are not known; and how many independent units tell them."""
-    without, errors = without_each(fit), np.full(fit.columns.shape[1], np.nan)
-    count = len(without)
+    """Of all coefficients, shape (K,), NaN where they are not known; and how many independent units tell them.
+
+    To find the shapes anew, too, makes no coefficient surer; only bounds can make it seem so.
+    """
+    held, found = without_each(fit), without_each(fit, tangents(fit))
+    errors, count = np.full(held.shape[1], np.nan), len(held)
     if count > 2:
-        spread = without - np.mean(without, axis=0)
         kept = np.concatenate([term.kept for term in fit.terms])
-        errors[kept] = np.sqrt((count - 1.0) / count * np.sum(spread**2, axis=0))[kept]
+        errors[kept] = np.maximum(*(np.sqrt(count - 1.0) * np.std(one, axis=0) for one in (held, found)))[kept]
     return errors, count
 
 
-def without_each(fit: Fit) -> FloatArray:
-    """Coefficients with each independent unit left out in turn, shape (units, K); 0 where not kept."""
+def without_each(fit: Fit, beside: FloatArray | None = None) -> FloatArray:
+    """Coefficients with each independent unit left out in turn, shape (units, K); 0 where not kept.
+
+    Args:
+        fit: of the model.
+        beside: more columns (N, m) that are fitted, as tangents of the shapes: how fast Stribeck friction falls, and
+            what Coulomb friction remains, are known together or not at all.
+    """
     kept = np.concatenate([term.kept for term in fit.terms])
     columns, effort = fit.training_equations
-    columns, unit = columns[:, kept], independent_units(fit, fit.training)
-    bounds = fit.bounds.of(kept)
+    columns, bounds = columns[:, kept], fit.bounds.of(kept)
+    if beside is not None:
+        columns = np.column_stack([columns, fit.weight[fit.training, None] * beside[fit.training]])
+        free = np.full(beside.shape[1], np.inf)
+        bounds = Bounds(np.concatenate([bounds.low, -free]), np.concatenate([bounds.high, free]))
+    unit = independent_units(fit, fit.training)
     gram, moment = columns.T @ columns, columns.T @ effort
     labels = np.unique(unit)
     without = np.zeros((len(labels), len(kept)))
     for row, label in enumerate(labels):
         inside, own = columns[unit == label], effort[unit == label]
-        without[row, kept] = solve_without((gram, moment), (inside.T @ inside, inside.T @ own), bounds)
+        found = solve_without((gram, moment), (inside.T @ inside, inside.T @ own), bounds)
+        without[row, kept] = found[: kept.sum()]
     return without

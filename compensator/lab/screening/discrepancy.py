@@ -24,10 +24,10 @@ from compensator.lab.effects.effect import Motion, Shape
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.linear import Term
 from compensator.lab.model.prediction import at_position
+from compensator.lab.model.tangents import TANGENT_STEP, moved_shapes, tangents
 from compensator.lab.recordings.recording import FloatArray
 
 OFFSET = "offset"
-TANGENT_STEP = 0.05  # relative change of a shape value for its tangent column
 
 
 def model_columns(fit: Fit, apart: Collection[str] = ()) -> FloatArray:
@@ -38,7 +38,7 @@ def model_columns(fit: Fit, apart: Collection[str] = ()) -> FloatArray:
         apart: effects whose product is left out: an effect that is judged stands for it.
     """
     free = np.concatenate([term.kept & ~term.at_bound for term in fit.terms])
-    return np.column_stack([fit.columns[:, free], *_tangents(fit), discrepancy_columns(fit, apart)])
+    return np.column_stack([fit.columns[:, free], tangents(fit), discrepancy_columns(fit, apart)])
 
 
 def discrepancy_columns(fit: Fit, apart: Collection[str] = ()) -> FloatArray:
@@ -50,16 +50,6 @@ def discrepancy_columns(fit: Fit, apart: Collection[str] = ()) -> FloatArray:
     full_rate = (np.array([column for kind in kinds for column in kind(terms, m)]) for m in motions)
     first = next(full_rate)  # the others one by one: all of them at the full rate would need much memory
     return dataset.stack(chain([first], full_rate)) if len(first) else np.empty((len(dataset.effort), 0))
-
-
-def _tangents(fit: Fit) -> list[FloatArray]:
-    """The tangent of every fitted shape, (N,) each."""
-    found = []
-    for term in fit.terms:
-        for moved in _moved(term):
-            here, there = fit.dataset.unchecked_columns(term.effect, [term.shape, moved])
-            found.append((there - here) @ term.coefficients)
-    return found
 
 
 def _own(terms: list[Term], motion: Motion) -> list[FloatArray]:
@@ -117,8 +107,8 @@ def _products(terms: list[Term], motion: Motion, apart: Collection[str]) -> list
         if {first.effect.name, second.effect.name} <= set(apart):
             continue
         found.append(one * other)
-        found += [one * (_share(second, motion, moved) - other) for moved in _moved(second)]
-        found += [other * (_share(first, motion, moved) - one) for moved in _moved(first)]
+        found += [one * (_share(second, motion, moved) - other) for moved in moved_shapes(second)]
+        found += [other * (_share(first, motion, moved) - one) for moved in moved_shapes(first)]
     return [product * motion.direction for product in found]
 
 
@@ -126,13 +116,3 @@ def _share(term: Term, motion: Motion, shape: Shape) -> FloatArray:
     """What the term adds to the effort of a trial, at a shape."""
     share: FloatArray = term.coefficients @ term.effect.columns(motion, shape)
     return share
-
-
-def _moved(term: Term) -> list[Shape]:
-    """The term's shape with one value after the other moved a little; none where it is held."""
-    if not term.effect.smooth_shape or term.at_bound.any():
-        return []
-    return [
-        tuple(x * (1.0 + TANGENT_STEP * (i == index)) for i, x in enumerate(term.shape))
-        for index in range(len(term.shape))
-    ]

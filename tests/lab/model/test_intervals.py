@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import binom
 
 from compensator.lab.model.fit import fit_model
-from compensator.lab.model.intervals import estimates
+from compensator.lab.model.intervals import estimates, standard_errors, without_each
 from compensator.lab.model.weights import LIMITS, RowWeights
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
@@ -68,3 +68,13 @@ def test_rows_with_larger_residuals_weigh_less():
     assert np.median(weights) == pytest.approx(1.0, rel=0.1)
     extreme = RowWeights.learnt(dataset, residual * np.where(fast, 1e3, 1.0), rows).of(dataset, rows)
     assert LIMITS[0] <= extreme.min() < extreme.max() <= LIMITS[1]
+
+
+def test_a_shape_that_is_not_known_makes_no_coefficient_surer():
+    """Coulomb and Stribeck friction are known together with the Stribeck speed, or not at all."""
+    dataset = make_dataset(recordings(Joint(), Bench(), many(9), seed=3), FACTS, Processing(8.0))
+    fit = fit_model(dataset, [*LINEAR, "stribeck"])
+    errors, count = standard_errors(fit)
+    held = np.sqrt(count - 1.0) * np.std(without_each(fit), axis=0)
+    assert np.all(errors >= held)
+    assert errors[LINEAR.index("coulomb") + 2] > 1.2 * held[LINEAR.index("coulomb") + 2]  # inertia and gravity have two
