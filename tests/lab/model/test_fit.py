@@ -172,6 +172,7 @@ def test_a_shape_settles_with_the_load_that_it_is_of():
     """The load of a model without the spring is not that of the arm: beside it, the spring seems twice as quick."""
     made = recordings(Joint(extra=twisting), trials=plans((0.0, 0.25)), seed=4)
     told = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2)
-    fit = fit_model(make_dataset(made, told, Processing()), default_effects(told))
+    # below the resonance of 8 Hz rows hardly tell where it is
+    fit = fit_model(make_dataset(made, told, Processing(cutoff_hz=12.0)), default_effects(told))
     found = fit_effects(fit, [*fit.names, "elasticity"])
     assert found.shapes["elasticity"][0] == pytest.approx(50.0 / (2.0 * np.pi), rel=0.05)
