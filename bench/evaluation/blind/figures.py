@@ -13,6 +13,7 @@ from bench.evaluation.blind.smallest import smallest_found
 from bench.evaluation.challenge.names import ACCEPTED
 
 MUST_NAME, MUST_NOT_NAME = 6.0, 3.0  # d' from which a name is due, and below which a single one is too much
+STATED, OFF = 0.9, 0.04  # confidence of intervals, and by how much it may be wrong
 SHOWN = 0.15  # r from which an effect is expected in the class
 CLEAR = 0.3
 
@@ -65,6 +66,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
     return [
         *_false_alarms(answered),
         _uniform(answered),
+        _intervals(answered),
         _named_by_other_laws(answered),
         _share("named first where d' >= 6", 0.95, strong, _is_right),
         _share("truth among the first three, r >= 0.15", 0.98, ranked, _among_three),
@@ -121,6 +123,16 @@ def _uniform(answered: Sequence[Result]) -> Figure:
     chance = float(kstest(found, "uniform").pvalue) if found else nan
     what = "chance of such p-values of complete models, if they are uniform"
     return Figure(what, "at least 5 %", chance, nan, nan, len(found), chance >= 0.05)
+
+
+def _intervals(answered: Sequence[Result]) -> Figure:
+    """Intervals of the parameters of complete models hold the truth as often as they say."""
+    held = [one <= STATED for result in answered for one in result.confidences]
+    count, share = len(held), float(np.mean(held)) if held else nan
+    low, high = interval(sum(held), count) if held else (nan, nan)
+    asked = f"{STATED - OFF:.0%} .. {STATED + OFF:.0%}"
+    what = f"{STATED:.0%} intervals of the parameters of complete models that hold the truth"
+    return Figure(what, asked, share, low, high, count, abs(share - STATED) <= OFF)
 
 
 def _named_by_other_laws(answered: Sequence[Result]) -> Figure:

@@ -99,6 +99,7 @@ class Result:
         settled: what came of the trials that the lab asked for; None where it was not asked, or had no rivals.
         laws: r of friction laws that the base model does not have, whatever else is hidden.
         own: what the catalogue calls these laws: names that are right as well.
+        confidences: that intervals of the base model's parameters take to reach the truth, where that is known.
     """
 
     __pydantic_config__ = _NOTHING_ELSE
@@ -119,6 +120,7 @@ class Result:
     withheld_left: Standing | None = None
     laws: float = 0.0
     own: tuple[str, ...] = ()
+    confidences: tuple[float, ...] = ()
 
     def to_json(self) -> dict[str, object]:
         """Nested dicts."""

@@ -12,7 +12,17 @@ from bench.evaluation.blind.judge import ask_lab, can_be_seen, left_beside
 from bench.evaluation.blind.oracle import NEEDED
 from bench.evaluation.blind.recorded import base_fit
 from bench.evaluation.blind.result import LabAnswer, Result, Standing
-from bench.evaluation.blind.second_plant import KNOWN, NAMES, OUTSIDE, SecondJoint, recordings_of, rig_of, second_joint
+from bench.evaluation.blind.second_plant import (
+    KNOWN,
+    NAMES,
+    OUTSIDE,
+    SecondJoint,
+    recordings_of,
+    rig_of,
+    second_joint,
+    true_parameters,
+)
+from bench.evaluation.blind.stated import confidences
 from compensator.lab.effects.catalogue import withheld
 from compensator.lab.errors import LabError
 from compensator.lab.model.fit import fit_effects
@@ -94,6 +104,7 @@ def judge_second(item: Item) -> Result:
         gathered = gather(fit)
         error = held_out(_whole(fit, names)).relative
         rivals = {name: rival(gathered) for name, rival in RIVALS.items()}
+        stated = confidences(fit, true_parameters(joint)) if item.family == "complete" else ()
         unlisted = _without_name(fit, names[0]) if item.family == "single" else None
         left = None if unlisted is None else left_beside(fit, gathered, names[0], unlisted.first[:1])
     except LabError as refusal:
@@ -103,7 +114,7 @@ def judge_second(item: Item) -> Result:
         )  # fmt: skip
     return Result(
         item.key, item.family, joint.truths, names, joint.sizes, answer, standings, outside, error, rivals, seconds,
-        withheld=unlisted, withheld_left=left, laws=joint.laws, own=joint.own,
+        withheld=unlisted, withheld_left=left, laws=joint.laws, own=joint.own, confidences=stated,
     )  # fmt: skip
 
 

@@ -147,6 +147,35 @@ def _next(tried: list[tuple[float, float]]) -> float:
     return below[0] + share * (above[0] - below[0])
 
 
+def true_parameters(joint: SecondJoint) -> dict[tuple[str, str], float]:
+    """Parameters of the base model of a joint that hides nothing, in the unit in which the lab has the effort.
+
+    A torque constant, a gear ratio and an arm that are told count as they are told. None where the effort is estimated
+    by a data sheet: what is off in that is in all of them.
+    """
+    drawn, rig, p = joint.drawn, rig_of(joint), joint.drawn.physics
+    constant, ratio = rig.motor.torque_constant_n_m_a, rig.gear.ratio
+    if drawn.sensors.effort == "estimate" or joint.own or joint.truths:
+        return {}
+    per_n_m, emf = 1.0 / p.torque_per_a, 0.0
+    if drawn.sensors.effort == "torque":
+        per_n_m = drawn.told.tolerance
+    elif drawn.sensors.effort == "duty":
+        per_n_m, emf = p.resistance_ohm / p.torque_per_a, p.emf_per_rad_s
+    elif constant is not None and ratio is not None:
+        per_n_m *= constant * ratio
+    longer = drawn.arm.length_m / float(f"{drawn.arm.length_m:.3g}")
+    return {
+        ("inertia", "inertia"): per_n_m * (p.rotor_kg_m2 + p.arm_kg_m2),
+        ("inertia", "load inertia scale"): per_n_m * longer**2,
+        ("gravity", "arm moment"): per_n_m * p.moment_n_m,
+        ("gravity", "load moment scale"): per_n_m * longer,
+        ("coulomb", "Coulomb friction"): per_n_m * p.coulomb_n_m,
+        ("viscous", "viscous friction"): per_n_m * p.viscous_n_m + emf,
+        ("offset", "offset"): 0.0,
+    }
+
+
 def recordings_of(joint: SecondJoint) -> list[Recording]:
     """Every trial of a joint, for the lab."""
     return [_recording(joint.drawn, one) for one in record(joint.drawn)]
