@@ -79,7 +79,7 @@ class Candidates:
     @property
     def stretches(self) -> int:
         """How many independent stretches of BLOCK_S the tested rows are of."""
-        return len(np.unique(self.fit.dataset.block_index[self.rows]))
+        return self.fit.dataset.stretches(self.rows)
 
     def with_block(self, block: Block) -> "Candidates":
         """The same candidates judged on top of one more block."""

@@ -95,9 +95,8 @@ class Noise:
             if variance := likeliest_variance(effect.columns(), left, power):
                 learnt = replace(effect, variance=variance)
                 covariances = [(rows, one + learnt.covariance(rows)) for rows, one in covariances]
-        stretches = len(np.unique(dataset.block_index[rows]))
         roots = tuple((rows, np.linalg.cholesky(one).astype(np.float64)) for rows, one in covariances)
-        return cls(max(stretches - 1, 1), roots)
+        return cls(max(dataset.stretches(rows) - 1, 1), roots)
 
     def whitened(self, values: FloatArray) -> FloatArray:
         """Weighted rows of columns (n, k), their noise independent and of unit variance."""

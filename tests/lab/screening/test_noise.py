@@ -20,6 +20,7 @@ def dataset(velocity: list[np.ndarray] | None = None) -> SimpleNamespace:
     """As much of a dataset as noise looks at; velocity of each trial."""
     time_s = PERIOD_S * np.arange(ROWS)
     velocity = [speed()] * TRIALS if velocity is None else velocity
+    block = np.concatenate([3 * trial + (time_s // 2.0).astype(int) for trial in range(TRIALS)])
     return SimpleNamespace(
         trials=tuple(SimpleNamespace(motion=SimpleNamespace(velocity=one)) for one in velocity),
         rows_of=np.concatenate,
@@ -28,7 +29,7 @@ def dataset(velocity: list[np.ndarray] | None = None) -> SimpleNamespace:
         time_of=lambda _trial: time_s,
         trial_index=np.repeat(np.arange(TRIALS), ROWS),
         trial_rows=[slice(trial * ROWS, (trial + 1) * ROWS) for trial in range(TRIALS)],
-        block_index=np.concatenate([3 * trial + (time_s // 2.0).astype(int) for trial in range(TRIALS)]),
+        stretches=lambda rows: len(np.unique(block[rows])),
     )
 
 
@@ -120,7 +121,7 @@ def test_a_long_trial_is_cut_where_its_noise_has_been_forgotten():
         rows_of=np.concatenate,
         time_of=lambda _trial: time_s,
         trial_rows=[slice(0, rows)],
-        block_index=(time_s // 2.0).astype(int),
+        stretches=lambda chosen: len(np.unique(time_s[chosen] // 2.0)),
     )
     residual = lfilter([0.6], [1.0, -0.8], np.random.default_rng(3).standard_normal(rows))
     noise = Noise.learnt(one, np.ones(rows, dtype=bool), Base(np.zeros((rows, 0)), residual))
