@@ -95,6 +95,21 @@ def test_of_other_laws_a_name_that_none_of_them_has_is_wrong() -> None:
     assert _figure(results, "wrongly named though nothing is hidden").measured == pytest.approx(2 / 3)
 
 
+def test_a_name_is_wrong_where_neither_what_is_hidden_nor_a_law_of_the_joint_is_in_its_class() -> None:
+    flagged = _result("outside", "", ("cogging",), 0.0, 0.0, unknown=True)
+    results = [
+        _result("single", "spring", ("cogging", "spring"), 1.0, 9.0),
+        _result("single", "spring", ("cogging",), 1.0, 9.0),
+        _result("single", "spring", (), 1.0, 9.0),
+        replace(_result("other-laws", "", ("viscous_power",), 0.0, 0.0), own=("viscous_power",)),
+        flagged,
+    ]
+    found = _figure(results, "wrong names, of those")
+    assert (found.items, found.measured) == (4, 0.5)
+    alone = next(one for one in figures(results) if one.what == "the same, where nothing else is said to be left")
+    assert (alone.items, alone.measured) == (3, pytest.approx(1 / 3))
+
+
 def test_a_flag_beside_other_laws_of_friction_is_right() -> None:
     flagged = _result("single", "spring", ("spring",), 1.0, 9.0, unknown=True)
     results = [flagged, replace(flagged, laws=0.05), replace(flagged, laws=0.2)]

@@ -68,6 +68,7 @@ def figures(results: Sequence[Result]) -> list[Figure]:
         _uniform(answered),
         _intervals(answered),
         _named_by_other_laws(answered),
+        *_wrong_names(answered),
         _share("named first where d' >= 6", 0.95, strong, _is_right),
         _share("truth among the first three, r >= 0.15", 0.98, ranked, _among_three),
         _share("truth in the class, r >= 0.15", 0.97, shown, _in_class),
@@ -140,6 +141,20 @@ def _named_by_other_laws(answered: Sequence[Result]) -> Figure:
     what = "wrongly named though nothing is hidden, friction by laws outside the base model"
     among = [one for one in answered if one.family == "other-laws"]
     return _share(what, 0.02, among, _is_wrong, at_most=True)
+
+
+def _wrong_names(answered: Sequence[Result]) -> list[Figure]:
+    """Whatever is hidden: names are given where the held-out gain is surely above zero, and nowhere else."""
+    named = [one for one in answered if _first(one)]
+
+    def wrong(one: Result) -> bool:
+        return not _right_names(one).intersection(_first(one))
+
+    alone = [one for one in named if not _flagged(one)]
+    return [
+        _share("wrong names, of those with a held-out gain surely above zero", 0.03, named, wrong, at_most=True),
+        _share("the same, where nothing else is said to be left", 0.03, alone, wrong, at_most=True),
+    ]
 
 
 def _outside(answered: Sequence[Result]) -> list[Figure]:
@@ -291,8 +306,13 @@ def _is_exact(one: Result) -> bool:
 
 def _extra(one: Result) -> bool:
     """Whether something is named that is no right name of anything that is hidden."""
-    right = {*one.names, *one.own, *(name for truth in one.truths for name in ACCEPTED.get(truth, ()))}
-    return any(names[0] not in right for names in _answer(one).named)
+    return any(names[0] not in _right_names(one) for names in _answer(one).named)
+
+
+def _right_names(one: Result) -> set[str]:
+    """Of all that is hidden, and of its own laws of friction."""
+    accepted = {name for truth in one.truths for name in ACCEPTED.get(truth, ())}
+    return {*one.names, *one.own, *accepted}
 
 
 def ratio_of(left: float) -> float:
