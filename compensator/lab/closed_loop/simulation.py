@@ -85,7 +85,7 @@ def moved_recording(dataset: Dataset, trial: Trial, position: FloatArray) -> Rec
 
 
 def _only(dataset: Dataset, trial: Trial) -> Dataset:
-    return replace(dataset, trials=(trial,), cache={}, unfiltered={})
+    return replace(dataset, trials=(trial,), scales=dataset.scales_for_others, cache={}, unfiltered={})
 
 
 def _drive(fit: Fit, trial: Trial, told_law: ControlLaw | None) -> tuple[Drive, ControlLaw]:

@@ -93,10 +93,11 @@ def more_trials(dataset: Dataset, recordings: Sequence[Recording]) -> Dataset:
         UnusableDataError: as `make_signals`.
     """
     effort, facts, cutoff = dataset.effort_definition, dataset.facts, dataset.cutoff_hz
+    scales = dataset.scales_for_others
     signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
-    trials = tuple(_make_trial(s, facts, cutoff, dataset.scales) for s in signals)
+    trials = tuple(_make_trial(s, facts, cutoff, scales) for s in signals)
     trials = trials if dataset.crosses_free_play else _on_one_flank(trials)
-    return replace(dataset, trials=trials, uncorrected=None, cache={}, unfiltered={})
+    return replace(dataset, trials=trials, scales=scales, uncorrected=None, cache={}, unfiltered={})
 
 
 def usable(dataset: Dataset, recordings: Sequence[Recording]) -> list[Recording]:

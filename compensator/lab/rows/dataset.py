@@ -64,6 +64,7 @@ class Scales:
         position_span: range of position.
         session_span_s: from the first trial's start to the last one's end.
         start_rate: geometric mean of the rates at which the effort changes when the joint starts [effort/s].
+        largest_effort: that the model predicts for trials of the dataset that these ones come to; 0: of these ones.
     """
 
     noise: float
@@ -72,6 +73,7 @@ class Scales:
     position_span: float
     session_span_s: float
     start_rate: float = np.nan
+    largest_effort: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -149,6 +151,11 @@ class Dataset:
         motions = [trial.motion for trial in self.trials]
         bends = self.stack([np.maximum(np.abs(motion.bend), motion.doubt)[None] for motion in motions])[:, 0]
         return 1.0 / (1.0 + np.maximum(bends, 0.0))
+
+    @property
+    def scales_for_others(self) -> Scales:
+        """By which other trials have columns as these ones have them, or some of these alone."""
+        return replace(self.scales, largest_effort=self.trials[0].motion.largest_effort)
 
     @property
     def is_predicted(self) -> bool:
@@ -349,7 +356,8 @@ class Dataset:
             late_s: of every trial's motion.
             back_emf: of every trial's motion.
         """
-        largest, nothing = float(np.abs(predicted).max(initial=0.0)), np.zeros(len(predicted))
+        nothing, largest = np.zeros(len(predicted)), self.scales.largest_effort
+        largest = largest or float(np.abs(predicted).max(initial=0.0))
         rates = rates_of_change(predicted, self.samples, [trial.signals.rate_hz for trial in self.trials])
         trials = tuple(
             Trial(

@@ -5,14 +5,15 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model import streaming
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.held_out_error import relative_error
+from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.model.streaming import fit_streamed, pieces
 from compensator.lab.model.validation import held_out
-from compensator.lab.rows.assembly import make_dataset
+from compensator.lab.rows.assembly import make_dataset, more_trials
 from compensator.lab.rows.dataset import Processing
 from tests.lab.synthetic import FACTS, Bench, Joint, Plan, plans, record, recordings
 
@@ -43,6 +44,18 @@ def test_the_same_trials_give_the_same_model_and_errors(fit, trials):
 def test_terms_of_the_predicted_load_are_built_from_the_load_of_the_fit(trials):
     fit = fit_model(make_dataset(trials, FACTS, Processing()), [*EFFECTS, "load_friction"])
     assert fit_streamed(fit, trials).coefficients == pytest.approx(fit.coefficients, rel=1e-4, abs=1e-6)
+
+
+def test_columns_that_go_by_the_largest_effort_are_those_of_all_trials(trials):
+    """A trial of little effort alone would have a dead time, or a sagging supply, of another size."""
+    fit = fit_model(make_dataset(trials, FACTS, Processing()), [*EFFECTS, "load_friction"])
+    whole = with_own_prediction(fit.dataset, fit.terms)
+    alone = with_own_prediction(more_trials(fit.dataset, trials[:1]), fit.terms)
+    dead_time = effect_named("dead_time")
+    (shape, *_) = dead_time.shapes(whole.trials[0].motion)[-1:]
+    among, single = (dead_time.columns(one.trials[0].motion, shape) for one in (whole, alone))
+    assert np.abs(alone.trials[0].motion.predicted).max() < 0.7 * whole.trials[0].motion.largest_effort
+    assert single == pytest.approx(among, abs=0.01)
 
 
 def test_a_long_trial_in_pieces_loses_no_row(fit, monkeypatch):
