@@ -5,14 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compensator.lab.closed_loop import simulation
 from compensator.lab.closed_loop.control_law import ControlLaw
+from compensator.lab.closed_loop.resistance import Resistance, resistances
 from compensator.lab.closed_loop.simulation import simulate
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import fit_model, with_coefficients
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
-from compensator.lab.rows.dataset import Processing
+from compensator.lab.rows.dataset import Dataset, Processing
 from tests.lab.closed_loop.servoed import FACTS, Joint, recordings, run
 
 MODEL = ["inertia", "gravity", "coulomb", "viscous"]
@@ -95,3 +98,18 @@ def test_where_the_power_is_off_the_joint_is_where_it_was_measured(fit):
 def test_a_model_without_inertia_does_not_move(fit):
     with pytest.raises(UnusableDataError, match="no inertia"):
         simulate(fitted(recordings(JOINT), MODEL[1:]), fit.dataset.trials[0])
+
+
+def test_a_trial_of_little_effort_is_moved_as_it_was_fitted(fit, monkeypatch):
+    """By the largest effort of all trials, not of its own: a dead time would be of another size."""
+    asked: list[float] = []
+
+    def seen(model: Fit, motions: Dataset) -> list[Resistance]:
+        asked.append(motions.scales.largest_effort)
+        return resistances(model, motions)
+
+    monkeypatch.setattr(simulation, "resistances", seen)
+    predicted = with_own_prediction(fit.dataset, fit.terms)
+    simulate(replace(fit, dataset=predicted), fit.dataset.trials[0])
+    assert set(asked) == {predicted.trials[0].motion.largest_effort}
+    assert asked[0] > 0.0
