@@ -13,6 +13,7 @@ from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import Dataset, RowChoice
 
 STATIC = "stribeck"
+EFFORT_UNIT = "{effort}"
 DRY = ("coulomb", "stribeck")  # effects whose sum is dry friction, and static friction at rest
 
 
@@ -103,9 +104,18 @@ def with_terms(fit: Fit, coefficients: FloatArray) -> Fit:
 
 
 def bounds_of(effects: Sequence[Effect], dataset: Dataset) -> Bounds:
-    """Physical bounds of all parameters of the effects, in order, in the effort of a dataset."""
+    """Physical bounds of all parameters of the effects, in order, in the effort of a dataset.
+
+    No friction was larger than the largest effort, which overcame it: where hardly a row shows static friction,
+    rounding would make it any number.
+    """
     quantity = dataset.effort_definition.quantity
-    ranges = [range_ for effect in effects for range_ in effect.ranges_in(quantity)]
+    largest = float(np.abs(dataset.effort).max(initial=0.0))
+    ranges = [
+        (low, min(high, largest) if effect.dry_friction and parameter.unit == EFFORT_UNIT else high)
+        for effect in effects
+        for parameter, (low, high) in zip(effect.parameters, effect.ranges_in(quantity), strict=True)
+    ]
     low, high = np.array(ranges).reshape(-1, 2).T
     return Bounds(low, high)
 

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from compensator.lab.effects.effect import Effect, Shape
+from compensator.lab.model.fitted import bounds_of
 from compensator.lab.model.linear import orthonormal
 from compensator.lab.model.order_search import Path
 from compensator.lab.recordings.recording import BoolArray, FloatArray
@@ -75,14 +76,14 @@ class _Search:
         whole = effect.grid([trial.motion for trial in dataset.trials])
         self._grid = [shape for shape in whole if effect.searched(shape)]
         self._beyond = [shape for shape in whole if not effect.searched(shape)]
-        self._bounds = [(parameter.low, parameter.high) for parameter in effect.parameters]
+        self._bounds = bounds_of([effect], dataset)
 
     def explained(self, columns: FloatArray) -> float:
         """Power that columns (N, k) explain of what the fixed ones leave; of one alone, within its bounds."""
         inside = self._weight * columns[self._rows]
         inside = inside - self._basis @ (self._basis.T @ inside)
-        if len(self._bounds) == 1:
-            return power_within(inside[:, 0], self._rest, self._bounds[0])
+        if inside.shape[1] == 1:
+            return power_within(inside[:, 0], self._rest, (float(self._bounds.low[0]), float(self._bounds.high[0])))
         basis = orthonormal(inside)
         shares = basis.T @ self._rest
         return float(shares @ shares)

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.errors import UnknownEffectError, UnusableDataError
 from compensator.lab.model.fit import fit_effects, fit_linear, fit_model
-from compensator.lab.model.fitted import Fit
+from compensator.lab.model.fitted import Fit, bounds_of
 from compensator.lab.model.intervals import estimates
 from compensator.lab.model.prediction import effort_per_torque, with_own_prediction
 from compensator.lab.rows.assembly import make_dataset
@@ -126,6 +126,13 @@ def test_bounds_hold_and_are_told():
     viscous = next(one for one in estimates(fit) if one.effect == "viscous")
     assert viscous.note == "held by its physical bound"
     assert viscous.low == 0.0
+
+
+def test_static_friction_is_no_larger_than_the_largest_effort():
+    """Where motion is quick, any static friction fits: it shows in no row."""
+    dataset = make_dataset(recordings(), FACTS, Processing())
+    high = bounds_of([effect_named(name) for name in ("viscous", "stribeck")], dataset).high
+    assert high.tolist() == [np.inf, float(np.abs(dataset.effort).max())]
 
 
 def test_columns_the_data_cannot_tell_apart_are_dropped_and_told():
