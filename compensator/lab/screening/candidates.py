@@ -110,7 +110,7 @@ class Candidates:
     def screened(self, blocks: list[Block]) -> Screening:
         """Evidence for some of them, whitened."""
         assert self.noise is not None
-        return screen(self.bases, blocks, self.noise.known_from)
+        return screen(self.bases, blocks, self.noise)
 
     def as_measured(self, index: int) -> Base:
         """One of the bases on weighted rows, every one as it was measured."""

@@ -6,7 +6,7 @@ autocorrelation for detection, and (elsewhere) the held-out gain. See docs/expla
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 from scipy.special import chdtrc, erfc, fdtrc, fdtri
@@ -19,6 +19,17 @@ from compensator.lab.screening.base import Base, Block
 SCREENINGS = 5  # of one diagnosis: steady effects, free curves, effects with memory, breakaway, the measuring chain
 DRAWS = 9999
 VERY_STRONG = 10.0  # of a score, twice a log Bayes factor (Kass, Raftery 1995)
+
+
+class Sources(Protocol):
+    """Noise of several sources, as `Noise` is."""
+
+    @property
+    def freedoms(self) -> FloatArray:
+        """How well each is known, as a variance from so many squares, shape (s,)."""
+
+    def shares(self, directions: FloatArray) -> FloatArray:
+        """Of the variance in each direction (n, k) of whitened rows, of unit norm, what each has, shape (s, k)."""
 
 
 @dataclass(frozen=True)
@@ -55,60 +66,64 @@ class Screening:
     chance: Callable[[float], float] = float
 
 
-def screen(bases: Sequence[Base], blocks: Sequence[Block], known_from: int) -> Screening:
+def screen(bases: Sequence[Base], blocks: Sequence[Block], noise: Sources) -> Screening:
     """Judge every block on whitened rows, against noise that is known.
 
     Where a few stretches hold all of an effect, as those at the highest speed do of drag, their flips can never say
-    how sure it is; the noise of all rows can. The null is Gaussian.
+    how sure it is; the noise of all rows can. The null is Gaussian. A variance that is made of several, each known from
+    a few squares, is known from fewer than their sum where one of the few has most (Satterthwaite 1946).
 
     Args:
         bases: what blocks are judged on top of, whitened.
         blocks: candidates, whitened.
-        known_from: how many independent stretches the noise is learnt from.
+        noise: that whitened them.
     """
     found = [(block, bases[block.base], new_directions(bases[block.base], block)) for block in blocks]
     found = [(block, base, directions) for block, base, directions in found if directions.shape[1]]
     if not found:
         return Screening([], 1.0)
+    together = np.concatenate([directions for _, _, directions in found], axis=1)
+    starts = np.cumsum([0, *(directions.shape[1] for _, _, directions in found)])
+    ranks = np.diff(starts)
+    shares = np.add.reduceat(noise.shares(together), starts[:-1], axis=1) / ranks
+    known_from = 1.0 / (shares.T**2 @ (1.0 / noise.freedoms))
     evidence = []
-    for block, base, directions in found:
+    for (block, base, directions), known in zip(found, known_from, strict=True):
         rows, rank = directions.shape
         share = directions.T @ base.residual
         gain = _likelihood(base, share, rows)
-        p_value = float(fdtrc(rank, known_from, float(share @ share) / rank))
+        p_value = float(fdtrc(rank, known, float(share @ share) / rank))
         evidence.append(
             Evidence(block, gain - _price(block, rank, rows), gain, p_value, _contribution(base, directions))
         )
-    chance = _joint_chances([directions for _, _, directions in found], known_from)
+    chance = _joint_chances(together, starts, shares, noise.freedoms, known_from)
     least = min(item.p_value for item in evidence)
     return Screening(sorted(evidence, key=lambda item: -item.score), chance(least), chance)
 
 
-def _joint_chances(blocks: Sequence[FloatArray], known_from: int) -> Callable[[float], float]:
+def _joint_chances(
+    together: FloatArray, starts: IntArray, shares: FloatArray, freedoms: FloatArray, known_from: FloatArray
+) -> Callable[[float], float]:
     """How likely white noise alone brings any of the blocks' own chances down to a given one.
 
     Args:
-        blocks: directions of each, orthonormal, shape (n, rank).
-        known_from: how well the noise is known.
+        together: directions of all blocks, orthonormal in each, shape (n, k).
+        starts: where each block has its first, and k, shape (blocks + 1,).
+        shares: of each source of noise in the variance of each block, shape (s, blocks).
+        freedoms: how well each source is known, shape (s,).
+        known_from: how well that of each block is, shape (blocks,).
     """
-    together = np.concatenate(blocks, axis=1)
     powers, axes = np.linalg.eigh(together.T @ together)
     root = axes * np.sqrt(np.maximum(powers, 0.0))
     generator = np.random.default_rng(0)
     drawn = root @ generator.standard_normal((DRAWS, len(powers))).T
-    known = generator.chisquare(known_from, DRAWS) / known_from
-    strongest: dict[int, FloatArray] = {}  # of each draw, by rank
-    ends = np.cumsum([0, *(own.shape[1] for own in blocks)])
-    for first, last in pairwise(ends):
-        rank = int(last - first)
-        strongest[rank] = np.maximum(strongest.get(rank, 0.0), np.sum(drawn[first:last] ** 2, axis=0) / known)
+    known = (generator.chisquare(freedoms, (DRAWS, len(freedoms))) / freedoms) @ shares
+    ranks = np.diff(starts)
+    statistics = np.add.reduceat(drawn**2, starts[:-1], axis=0) / ranks[:, None] / known.T
 
     def chance(own: float) -> float:
-        reached = [
-            found >= rank * float(fdtri(rank, known_from, 1.0 - own)) * (1.0 - 1e-9)
-            for rank, found in strongest.items()
-        ]
-        return (1.0 + float(np.any(reached, axis=0).sum())) / (1.0 + DRAWS)
+        highest = fdtri(ranks, known_from, 1.0 - own) * (1.0 - 1e-9)
+        return (1.0 + float(np.any(statistics >= highest[:, None], axis=0).sum())) / (1.0 + DRAWS)
 
     return chance
 

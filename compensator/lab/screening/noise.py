@@ -8,7 +8,7 @@ alone is chi-squared.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -17,7 +17,7 @@ from scipy.linalg import solve_triangular
 from compensator.lab.recordings.recording import BoolArray, FloatArray, IntArray
 from compensator.lab.rows.dataset import BLOCK_S, FEWEST_ROWS, Dataset
 from compensator.lab.screening.base import Base
-from compensator.lab.screening.random_effects import RandomEffect, likeliest_variance
+from compensator.lab.screening.random_effects import RandomEffect
 
 SPEEDS = 3  # kinds of rows, slow to fast, as many of each
 MODEL_ERROR = 0.03  # share of the variance, white: at no frequency is a model right to less
@@ -67,12 +67,14 @@ class Noise:
     """Noise of each trial's rows, of one source, coloured by the speed.
 
     Attributes:
-        known_from: independent stretches of BLOCK_S, less one: how well the noise is known.
         roots: of the covariance of each place (Cholesky, lower), with its rows.
+        stretches: independent ones of BLOCK_S, less one: how well the colour is known.
+        random: effects in the covariance beside the colour.
     """
 
-    known_from: int
     roots: tuple[tuple[slice, FloatArray], ...]
+    stretches: float
+    random: tuple[RandomEffect, ...] = ()
 
     @classmethod
     def learnt(cls, dataset: Dataset, rows: BoolArray, left: Base, random: Sequence[RandomEffect] = ()) -> "Noise":
@@ -91,12 +93,26 @@ class Noise:
             found: FloatArray = np.sum(each, axis=0)
             return found
 
-        for effect in random:
-            if variance := likeliest_variance(effect.columns(), left, power):
-                learnt = replace(effect, variance=variance)
-                covariances = [(rows, one + learnt.covariance(rows)) for rows, one in covariances]
+        found = []
+        for effect in (one.learnt(left, power) for one in random):
+            if effect.variance > 0.0:
+                found.append(effect)
+                covariances = [(rows, one + effect.covariance(rows)) for rows, one in covariances]
         roots = tuple((rows, np.linalg.cholesky(one).astype(np.float64)) for rows, one in covariances)
-        return cls(max(dataset.stretches(rows) - 1, 1), roots)
+        return cls(roots, max(dataset.stretches(rows) - 1, 1), tuple(found))
+
+    @property
+    def freedoms(self) -> FloatArray:
+        """How well each source of noise is known, as a variance from so many squares: colour, random effects; (s,)."""
+        return np.array([self.stretches, *(effect.freedom for effect in self.random)], dtype=float)
+
+    def shares(self, directions: FloatArray) -> FloatArray:
+        """Of the variance in each direction (n, k) of whitened rows, of unit norm, what each source has; (s, k)."""
+        random = np.zeros((len(self.random), directions.shape[1]))
+        for rows, root in self.roots if self.random else ():
+            own = solve_triangular(root, directions[rows], lower=True, trans=1, check_finite=False)
+            random += [effect.power(rows, own) for effect in self.random]
+        return np.vstack([1.0 - random.sum(axis=0), random])
 
     def whitened(self, values: FloatArray) -> FloatArray:
         """Weighted rows of columns (n, k), their noise independent and of unit variance."""

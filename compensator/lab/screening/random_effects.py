@@ -7,15 +7,16 @@ do, seems to explain it. So each is a random effect in the noise (Laird, Ware 19
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.screening.base import Base
 
-VARIANCES = np.concatenate([[0.0], np.geomspace(1e-3, 1.0, 61) ** 2])  # of the factor: none to all of it
+VARIANCES = np.geomspace(1e-3, 10.0, 81) ** 2  # of the factor
 MOST = 24  # groups that the variance is learnt from, those with most
+TINY = float(np.finfo(float).tiny)
 NEGLIGIBLE = 1e-6  # share of their power: the base explains it
 
 
@@ -27,11 +28,13 @@ class RandomEffect:
         share: weighted, in the effort's unit, shape (n,).
         group: of each row, 0 .. G - 1, shape (n,).
         variance: of the factor.
+        freedom: of how many squares the variance is known as well; 0 where it is not.
     """
 
     share: FloatArray
     group: IntArray
     variance: float = 0.0
+    freedom: float = 0.0
 
     def columns(self) -> FloatArray:
         """The shares of the groups that have most, a column each, shape (n, up to MOST)."""
@@ -45,22 +48,37 @@ class RandomEffect:
         found: FloatArray = self.variance * np.equal.outer(group, group) * np.outer(share, share)
         return found
 
+    def power(self, rows: slice, directions: FloatArray) -> FloatArray:
+        """What it adds to the variance of what some rows have in directions (m, k), shape (k,)."""
+        _, group = np.unique(self.group[rows], return_inverse=True)
+        each = np.zeros((int(group.max(initial=-1)) + 1, directions.shape[1]))
+        np.add.at(each, group, directions * self.share[rows, None])
+        found: FloatArray = self.variance * np.sum(each**2, axis=0)
+        return found
 
-def likeliest_variance(columns: FloatArray, left: Base, power: Callable[[FloatArray], FloatArray]) -> float:
-    """Of a factor of columns: the likeliest of VARIANCES, beside other noise.
+    def learnt(self, left: Base, power: Callable[[FloatArray], FloatArray]) -> "RandomEffect":
+        """With its variance, and how well that is known, beside other noise.
 
-    Args:
-        columns: of each group, shape (n, g).
-        left: the model, and what it left.
-        power: of the other noise in directions (n, k), shape (k,).
-    """
-    columns = left.beyond(columns)
-    powers, axes = np.linalg.eigh(columns.T @ columns)
-    solid = powers > NEGLIGIBLE * max(float(powers.sum()), np.finfo(float).tiny)
-    if not solid.any():
-        return 0.0
-    powers = powers[solid]
-    directions = columns @ (axes[:, solid] / np.sqrt(powers))
-    expected = np.maximum(power(directions), np.finfo(float).tiny) + VARIANCES[:, None] * powers
-    likelihood = -0.5 * np.sum(np.log(expected) + (directions.T @ left.residual) ** 2 / expected, axis=1)
-    return float(VARIANCES[int(np.argmax(likelihood))])
+        Each deviation is as likely beforehand (Gelman 2006). What the groups make of them has a mean and a spread, as a
+        scaled inverse chi-squared variable of so many degrees of freedom has: few groups, or none that stands out of
+        the other noise, tell no variance, and not that there is none.
+
+        Args:
+            left: the model, and what it left.
+            power: of the other noise in directions (n, k), shape (k,).
+        """
+        whole = self.columns()
+        columns = left.beyond(whole)
+        powers, axes = np.linalg.eigh(columns.T @ columns)
+        solid = powers > NEGLIGIBLE * max(float(np.sum(whole**2)), TINY)
+        if not solid.any():
+            return self
+        powers = powers[solid]
+        directions = columns @ (axes[:, solid] / np.sqrt(powers))
+        expected = np.maximum(power(directions), TINY) + VARIANCES[:, None] * powers
+        likelihood = -0.5 * np.sum(np.log(expected) + (directions.T @ left.residual) ** 2 / expected, axis=1)
+        chance = np.sqrt(VARIANCES) * np.exp(likelihood - likelihood.max())
+        mean = float(chance @ VARIANCES / chance.sum())
+        spread = float(chance @ (VARIANCES - mean) ** 2 / chance.sum())
+        freedom = 4.0 + min(2.0 * mean**2 / max(spread, TINY), len(powers))
+        return replace(self, variance=mean * (freedom - 2.0) / freedom, freedom=freedom)

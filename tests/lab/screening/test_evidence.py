@@ -7,6 +7,7 @@ from scipy.stats import binom
 
 from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.evidence import Screening, kept_evidence, screen
+from compensator.lab.screening.noise import Noise
 
 ROWS, KNOWN_FROM = 600, 59
 
@@ -16,7 +17,7 @@ def smooth(random: np.random.Generator, count: int) -> np.ndarray:
 
 
 def screened(bases: list[Base], blocks: list[Block]) -> Screening:
-    return screen(bases, blocks, KNOWN_FROM)
+    return screen(bases, blocks, Noise((), KNOWN_FROM))
 
 
 def problem(seed: int, planted: float = 0.0) -> tuple[list[Base], list[Block]]:
@@ -43,7 +44,7 @@ def test_false_alarms_on_noise_are_as_rare_as_they_say():
 def test_of_one_block_the_chance_among_all_is_its_own():
     """However few stretches tell the noise: that is in the chance of the block, and in that among all."""
     bases, blocks = problem(7)
-    found = screen(bases, blocks[:1], 5)
+    found = screen(bases, blocks[:1], Noise((), 5))
     assert found.chance is not None
     for own in (0.02, 0.1, 0.5):
         assert found.chance(own) == pytest.approx(own, rel=0.15)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+import compensator.lab.screening.noise as noise_module
 from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.evidence import screen
 from compensator.lab.screening.noise import LONGEST, Noise
@@ -67,7 +68,7 @@ def screened(noise: Noise, base: Base, blocks: list[Block]):
     """Blocks screened on whitened rows."""
     white = Base.of(noise.whitened(base.basis), noise.whitened(base.residual[:, None])[:, 0])
     own = [Block(one.name, noise.whitened(one.columns), 0, 1) for one in blocks]
-    return screen([white], own, noise.known_from)
+    return screen([white], own, noise)
 
 
 def from_stop_to_stop() -> RandomEffect:
@@ -251,3 +252,40 @@ def test_what_three_stretches_hold_is_found():
     base = Base.of(np.ones((len(ALL), 1)), noise + 1.5 * held)
     known = learnt(base.extended(held[:, None]).residual)
     assert screened(known, base, [Block("held", held[:, None], 0, 1)]).p_value <= 0.001
+
+
+def test_few_trials_tell_little_of_what_differs_between_them():
+    """A contrast of trials is known as from few squares, one within trials as from all stretches."""
+    random = np.random.default_rng(12)
+    trial = np.repeat(np.arange(TRIALS), ROWS)
+    residual = coloured(random, 0.3) + random.standard_normal(TRIALS)[trial]
+    noise = Noise.learnt(dataset(), ALL, Base(NOTHING, residual), [RandomEffect(np.ones(len(ALL)), trial)])
+    within = np.tile(np.sin(2.0 * np.pi * np.arange(ROWS) / ROWS), TRIALS)
+    directions = noise.whitened(np.column_stack([np.where(trial < 6, 1.0, -1.0), within]))
+    shares = noise.shares(directions / np.linalg.norm(directions, axis=0))
+    assert np.sum(shares, axis=0) == pytest.approx(1.0)
+    assert shares[1, 0] > 0.6
+    assert shares[1, 1] < 0.1
+    few, all_of_them = 1.0 / (shares.T**2 @ (1.0 / noise.freedoms))
+    assert few < TRIALS + 5 < 0.8 * noise.stretches < all_of_them
+
+
+def test_scatter_of_a_trial_that_is_cut_is_as_large_as_its_covariance_says(monkeypatch):
+    monkeypatch.setattr(noise_module, "LONGEST", 50)
+    random = np.random.default_rng(13)
+    trial = np.repeat(np.arange(TRIALS), ROWS)
+    residual = coloured(random, 0.3) + random.standard_normal(TRIALS)[trial]
+    noise = Noise.learnt(dataset(), ALL, Base(NOTHING, residual), [RandomEffect(np.ones(len(ALL)), trial)])
+    assert len(noise.roots) == 3 * TRIALS
+    directions = noise.whitened(np.eye(len(ALL))[:, ::40])
+    shares = noise.shares(directions / np.linalg.norm(directions, axis=0))
+    assert shares.min() >= 0.0
+
+
+def test_what_the_model_holds_of_a_single_trial_tells_no_scatter():
+    """Of one trial alone the model has fitted all that differs there: rounding of it is nothing to learn from."""
+    share = speed()
+    one = RandomEffect(share, np.zeros(ROWS, dtype=int))
+    left = Base.of(share[:, None], np.random.default_rng(14).standard_normal(ROWS))
+    found = one.learnt(left, lambda directions: np.ones(directions.shape[1]))
+    assert (found.variance, found.freedom) == (0.0, 0.0)
