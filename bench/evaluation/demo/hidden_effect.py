@@ -18,7 +18,8 @@ from bench.study.models.diagnosis import ORDER, Diagnosis, Ranked
 from bench.study.models.ladder import Ladder, Rung
 
 BASE = (
-    "inertia", "gravity", "offset", "coulomb", "viscous", "stribeck", "weight_friction", "load_friction",
+    "inertia", "gravity", "offset", "coulomb", "viscous", "stribeck",
+    "weight_friction", "weight_stribeck", "load_friction",
 )  # fmt: skip
 """What the paper knows of its joint: General Kinetic Friction that grows with the load."""
 
