@@ -20,7 +20,7 @@ from compensator.lab import progress
 from compensator.lab.closed_loop import loop_comparison as lab
 from compensator.lab.closed_loop.control_law import ControlLaw
 from compensator.lab.closed_loop.refinement import Refinement, refine
-from compensator.lab.model.fit import with_coefficients
+from compensator.lab.model.fit import seeing_all, with_coefficients
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import relative_error
 from compensator.lab.recordings.recording import FloatArray
@@ -44,7 +44,7 @@ def simulate(store: Store, study_id: int, model_id: int | None = None, refined: 
     """
     material, model = load_model(store, study_id, model_id)
     progress.enter(FITTING)
-    fit = material.fit_of(model)
+    fit = seeing_all(material.fit_of(model))  # the joint stands and turns on its way
     progress.enter(MOVING)
     laws = _laws(store, material, fit)
     with lab_errors():

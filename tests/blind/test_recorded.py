@@ -92,5 +92,5 @@ def test_a_quiet_joint_leaves_less_than_one_that_scatters(measured: tuple[DrawnP
 def test_what_hides_next_to_nothing_has_no_r_and_more_of_it_has_more(measured: tuple[DrawnPlant, Scale]) -> None:
     drawn, scale = measured
     # encoder and cut-off let what is left differ by some percent between recordings that hide nothing
-    assert scale.ratio(draw_item(HOSE, 0, 1e-4)) < MODERATE[0] / 3.0
+    assert scale.ratio(draw_item(HOSE, 0, 1e-4)) < MODERATE[0] / 2.0
     assert scale.ratio(draw_item(HOSE, 0, 0.5)) < scale.ratio(drawn)

@@ -93,7 +93,7 @@ def _ours(folder: Path, hold_out_kp: int) -> dict[str, Any]:
     from bench.study.material import facts_of
     from compensator.lab.diagnosis.diagnose import diagnose
     from compensator.lab.effects.catalogue import default_effects
-    from compensator.lab.model.fit import fit_effects, fit_model
+    from compensator.lab.model.fit import fit_effects, fit_model, seeing_all
     from compensator.lab.rows.assembly import make_dataset
     from compensator.lab.rows.dataset import Processing
 
@@ -109,7 +109,7 @@ def _ours(folder: Path, hold_out_kp: int) -> dict[str, Any]:
         fits.append(fit_effects(base, [*base.names, named[0][0]]))
         times.append(time.process_time())
     logs = _logs([one for one in everything if one.conditions["kp"] == hold_out_kp])
-    errors = [logs.mean_absolute_error_rad(simulated(fit, logs)) for fit in fits]
+    errors = [logs.mean_absolute_error_rad(simulated(seeing_all(fit), logs)) for fit in fits]
     return {"models": list(zip(times, errors, strict=True)), "added": list(fits[-1].names[len(base.names) :])}
 
 

@@ -9,6 +9,7 @@ from bench.study.errors import StudyError
 from bench.study.material import Material, load
 from bench.study.models.comparison import Series
 from bench.study.models.plots import DriversOverTime, DriverValues
+from compensator.lab.model.fit import over_time
 from compensator.lab.model.fitted import Fit
 from compensator.lab.recordings.recording import FloatArray, IntArray
 from compensator.lab.rows.dataset import Dataset
@@ -19,7 +20,7 @@ SERIES_POINTS = 600  # of each trial in the answer; the fit uses all rows
 
 def series_of(material: Material, fit: Fit) -> list[Series]:
     """Measured and predicted effort of every trial."""
-    series = []
+    series, fit = [], over_time(fit)
     for index, trial in enumerate(material.trials):
         shown = _shown(fit.dataset, index)
         series.append(

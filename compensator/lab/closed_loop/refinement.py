@@ -5,7 +5,7 @@ every trial by the model, the effort is regressed on columns along that motion, 
 of the measured position does not get into the columns, and friction at reversals acts where the model has them.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -70,8 +70,8 @@ def _along(fit: Fit, moved: LoopComparison) -> Fit:
         moved_recording(dataset, trial, run.simulated.position)
         for trial, run in zip(dataset.trials, moved.trials, strict=True)
     ]
-    along = replace(more_trials(dataset, recordings), cache={}, unfiltered={})
-    rows = along.in_regimes(along.choice_for(fit.effects))
+    along = more_trials(dataset, recordings).seen_by("moving")
+    rows = along.in_regimes("moving")  # that of the model is known near its reversals, too
     return fit_model(
         along, fit.names, rows & np.isin(along.trial_index, trained_trials(dataset, fit.training)), fit.shapes
     )

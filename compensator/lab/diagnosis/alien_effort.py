@@ -12,6 +12,7 @@ import numpy as np
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import relative_error
 from compensator.lab.model.linear import solve
+from compensator.lab.model.validation import held_out
 
 UNEXPLAINED = 0.8  # of the effort: a rigid joint with friction explains more, whatever it lacks
 EXPLAINED = 0.75  # of the error: what an effect may leave of an effort that no mending of the data explains
@@ -75,14 +76,14 @@ def _held_at_zero(fit: Fit) -> list[str]:
 
 def _unexplained(fit: Fit) -> AlienEffort | None:
     """Inertia and friction explain next to nothing, or would be negative where much is left."""
-    error = relative_error(fit.residual[fit.training], fit.dataset.effort[fit.training])
+    error = held_out(fit).relative
     if error >= UNEXPLAINED and set(DISSIPATIVE) <= set(fit.names):
         text = (
-            f"inertia and friction explain next to nothing: the error is {error:.0%} of the effort; check that effort "
-            "and position are of the same joint and time, and their units"
+            f"inertia and friction explain next to nothing: the held-out error is {error:.0%} of the effort; check "
+            "that effort and position are of the same joint and time, and their units"
         )
         return AlienEffort(text, EXPLAINED * error, mended=False)
-    held = _held_at_zero(fit)
+    held, error = _held_at_zero(fit), relative_error(fit.residual[fit.training], fit.dataset.effort[fit.training])
     if error < POOR or not held:
         return None
     text = (

@@ -79,7 +79,8 @@ def helpful_curve(gathered: Candidates, generic: Screening) -> tuple[Evidence, H
 def is_helpful(before: HeldOut, after: HeldOut) -> bool:
     """Whether a curve lowers the held-out error for sure, and by more than what every measuring chain bends."""
     gain = held_out_gain(before, after)
-    return gain.low > 0.0 and gain.value >= LEAST_GAIN_OF_CHAIN
+    notable = explained_part(before.relative, after.relative) >= LEAST_OF_EFFORT
+    return notable and gain.low > 0.0 and gain.value >= LEAST_GAIN_OF_CHAIN
 
 
 def slight_one(diagnosis: Diagnosis, explained: float) -> Candidate | None:

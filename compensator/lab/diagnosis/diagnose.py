@@ -25,7 +25,7 @@ from compensator.lab.effects.catalogue import catalogue, effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.left_over.orders import with_found_order
-from compensator.lab.model.fit import widened
+from compensator.lab.model.fit import fit_model, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import Candidates
@@ -151,7 +151,9 @@ def _left_in_sliding(memory: Answer, sliding: Candidates) -> list[Note]:
     """What an effect with memory that is named leaves in steady sliding: near reversals not all of it is asked for."""
     if memory.explained is None or memory.remains:
         return []
-    return what_remains(memory.explained, sliding, memory.candidates[0].effect.name)
+    fit = memory.explained
+    seen = fit_model(sliding.fit.dataset, fit.names, fit.training, fit.shapes)
+    return what_remains(seen, sliding, memory.candidates[0].effect.name)
 
 
 def _once(candidates: list[Candidate]) -> list[Candidate]:

@@ -196,8 +196,8 @@ def _drops(start: Fit, fit: Fit, last_too: bool) -> list[Step]:
     for name in added if last_too else added[:-1]:
         without = fit_effects(fit, [other for other in fit.names if other != name])
         rows = fit.dataset.choice_for([effect_named(name)])
-        alike = widened(without, fit.dataset.choice_for(fit.effects))  # else the two are judged on other rows
-        if not predicts_better(held_out(fit, rows), held_out(alike, rows)):
+        wide = fit.dataset.choice_for(fit.effects)  # else the two are judged on other rows
+        if not predicts_better(*(held_out(widened(one, wide), rows) for one in (fit, without))):
             fit = without
             steps.append(_step("drop", name, None, fit))
     return steps

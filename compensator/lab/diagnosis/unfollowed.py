@@ -80,7 +80,7 @@ def provisional(fit: Fit, diagnosis: Diagnosis) -> Provisional | None:
         return None
     effect = filled.effects[-1]
     rows = filled.dataset.choice_for(filled.effects)
-    before, after = held_out(widened(fit, rows), rows), held_out(filled, rows)
+    before, after = (held_out(widened(one, rows), rows) for one in (fit, filled))
     return Provisional(effect, before.relative, after.relative, held_out_gain(before, after), _picture(filled, effect))
 
 

@@ -73,12 +73,18 @@ def fit_sliding(
 
 
 def widened(fit: Fit, rows: RowChoice) -> Fit:
-    """The same model on another choice of rows of the same trials, its shapes kept."""
-    trials = fit.dataset.trial_index
-    chosen = fit.dataset.in_regimes(rows) & np.isin(trials, trained_trials(fit.dataset, fit.training))
-    if (chosen == fit.training).all():
+    """The same model on another choice of rows of the same trials, as their filter sees them, its shapes kept."""
+    dataset = fit.dataset.seen_by(rows)
+    chosen = dataset.in_regimes(rows) & np.isin(dataset.trial_index, trained_trials(dataset, fit.training))
+    if dataset is fit.dataset and (chosen == fit.training).all():
         return fit
-    return fit_model(fit.dataset, fit.names, chosen, fit.shapes)
+    return fit_model(dataset, fit.names, chosen, fit.shapes)
+
+
+def seeing_all(fit: Fit) -> Fit:
+    """The same model on the same rows, as their filter sees stops and reversals beside them, its shapes kept."""
+    dataset = fit.dataset.seen_by("moving")
+    return fit if dataset is fit.dataset else fit_model(dataset, fit.names, fit.training, fit.shapes)
 
 
 def fit_effects(fit: Fit, effects: Sequence[str], sliding: Fit | None = None) -> Fit:
@@ -195,6 +201,11 @@ def with_coefficients(fit: Fit, coefficients: FloatArray) -> Fit:
     dataset = with_own_prediction(changed.dataset, changed.terms)
     columns = dataset.columns_of_model(fit.effects, fit.shapes)
     return replace(changed, dataset=dataset, columns=columns, target=dataset.target)
+
+
+def over_time(fit: Fit) -> Fit:
+    """The same coefficients on rows whose filter sees all: what goes on beside stops and reversals is no jump then."""
+    return with_coefficients(replace(fit, dataset=fit.dataset.seen_by("moving")), fit.coefficients)
 
 
 def with_columns(fit: Fit, name: str, columns: FloatArray) -> Fit:

@@ -58,7 +58,7 @@ class Path:
             each(lambda motion: motion.position),
             np.abs(each(lambda motion: motion.velocity)),
             each(lambda motion: motion.direction),
-            weight * (1.0 + each(lambda motion: motion.bend)),
+            weight * dataset.stack(1.0 + trial.motion.bend[None] for trial in dataset.trials)[rows, 0],
             2.0 * np.pi * dataset.cutoff_hz,
         )
 

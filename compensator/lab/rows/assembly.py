@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
 
 from compensator.lab import progress
 from compensator.lab.effects.effect import Motion
@@ -22,6 +24,7 @@ from compensator.lab.rows.dataset import Dataset, Processing, Scales, Trial
 SLOW_SHARE = 0.02  # of the 95 % quantile of speed: below, the direction of motion is uncertain
 NOISE_FACTOR = 3.0  # slow is at least this many standard deviations of the velocity noise
 TINY_SHARE = 0.01  # of slow: the sign of velocity is never smoothed less, so that it stays differentiable
+CARRIED_PERIODS = 0.5  # of the cut-off: so far the filter carries a step of friction
 ROWS_PER_CUTOFF_PERIOD = 2.5  # Nyquist rate and a margin for the filter's slope: at 2.0 the errors alias
 NUMERIC_CONDITIONS = ("load_kg", "arm_m", SESSION_START)
 FEWEST_ROWS = 40
@@ -63,7 +66,7 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
     scales = Scales(noise, slow, fast, span, _session_span_s(signals), _usual_start_rate(signals, slow))
     trials = _with_way([_make_trial(s, facts, cutoff, scales) for s in progress.each(signals)])
     plain = Dataset(trials, effort, facts, cutoff, processing.rows, scales)
-    settled = replace(plain, trials=_on_one_flank(trials), cache={}, unfiltered={})
+    settled = replace(plain, trials=_on_one_flank(trials, cutoff), cache={}, unfiltered={})
     enough = max(FEWEST_ROWS, FLANK_SHARE * int(plain.counted.sum()))
     dataset = settled if int(settled.counted.sum()) >= enough else replace(plain, crosses_free_play=True)
     found = int(dataset.counted.sum())
@@ -96,7 +99,7 @@ def more_trials(dataset: Dataset, recordings: Sequence[Recording]) -> Dataset:
     scales = dataset.scales_for_others
     signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
     trials = tuple(_make_trial(s, facts, cutoff, scales) for s in signals)
-    trials = trials if dataset.crosses_free_play else _on_one_flank(trials)
+    trials = trials if dataset.crosses_free_play else _on_one_flank(trials, cutoff)
     return replace(dataset, trials=trials, scales=scales, uncorrected=None, cache={}, unfiltered={})
 
 
@@ -208,7 +211,23 @@ def _make_trial(signals: Signals, facts: Facts, cutoff_hz: float, scales: Scales
     step = max(1, int(signals.rate_hz / (ROWS_PER_CUTOFF_PERIOD * cutoff_hz)))
     picked = np.arange(step // 2, len(signals.time_s), step)
     picked = picked[signals.usable[picked]]
-    return Trial(signals, motion, picked, classify(signals.velocity, scales.slow, signals.rate_hz, cutoff_hz)[picked])
+    regimes = classify(signals.velocity, scales.slow, signals.rate_hz, cutoff_hz)
+    regimes = np.where(signals.usable, regimes, Regime.STUCK).astype(np.uint8)
+    return Trial(signals, motion, picked, regimes, _window(regimes, signals.rate_hz, cutoff_hz))
+
+
+def _window(regimes: NDArray[np.uint8], rate_hz: float, cutoff_hz: float) -> FloatArray:
+    """Weights of the samples (n,) that rows in steady sliding see: 1 in it, 0 outside.
+
+    They rise as far as the filter carries a step. What the filter of the position leaves out of an acceleration is
+    fast: a sharp edge would carry it into the band.
+    """
+    inside = regimes == Regime.SLIDING
+    if inside.all():
+        return np.ones(len(inside))
+    way = np.minimum(distance_transform_edt(inside) * cutoff_hz / (CARRIED_PERIODS * rate_hz), 1.0)
+    found: FloatArray = np.sin(0.5 * np.pi * way) ** 2
+    return found
 
 
 def _with_way(trials: Sequence[Trial]) -> tuple[Trial, ...]:
@@ -227,14 +246,16 @@ def _with_way(trials: Sequence[Trial]) -> tuple[Trial, ...]:
     )
 
 
-def _on_one_flank(trials: tuple[Trial, ...]) -> tuple[Trial, ...]:
-    """The trials with rows near a crossing of the free play no longer counted as sliding."""
+def _on_one_flank(trials: tuple[Trial, ...], cutoff_hz: float) -> tuple[Trial, ...]:
+    """The trials with samples near a crossing of the free play no longer counted as sliding."""
     made = []
     for trial in trials:
-        crossing = near_flank_change(_carried(trial.motion), trial.signals.rate_hz)[trial.picked]
-        sliding = trial.regime == Regime.SLIDING
-        regime = np.where(sliding & crossing, Regime.TRANSIENT, trial.regime).astype(np.uint8)
-        made.append(replace(trial, regime=regime))
+        crossing = near_flank_change(_carried(trial.motion), trial.signals.rate_hz)
+        if crossing.any():
+            regimes = np.maximum(trial.regimes, np.where(crossing, Regime.TRANSIENT, Regime.SLIDING)).astype(np.uint8)
+            window = _window(regimes, trial.signals.rate_hz, cutoff_hz)
+            trial = replace(trial, regimes=regimes, window=window)
+        made.append(trial)
     return tuple(made)
 
 

@@ -78,12 +78,25 @@ class Scales:
 
 @dataclass(frozen=True)
 class Trial:
-    """One recording, ready: its motion at the full rate and which of its samples are rows."""
+    """One recording, ready: its motion at the full rate and which of its samples are rows.
+
+    Attributes:
+        signals, motion: of n samples.
+        picked: samples that are rows, thinned to the Nyquist rate.
+        regimes: of every sample, shape (n,).
+        window: weights of the samples that rows in steady sliding see, shape (n,); all others see all samples.
+    """
 
     signals: Signals
     motion: Motion
-    picked: IntArray  # indices into the full-rate signals, thinned to the Nyquist rate
-    regime: NDArray[np.uint8]  # of the picked samples
+    picked: IntArray
+    regimes: NDArray[np.uint8]
+    window: FloatArray
+
+    @property
+    def regime(self) -> NDArray[np.uint8]:
+        """Of each row."""
+        return self.regimes[self.picked]
 
 
 @dataclass(frozen=True)
@@ -98,6 +111,7 @@ class Dataset:
         rows: which regimes count.
         scales: of all trials.
         crosses_free_play: rows near a crossing of the free play are counted, since nearly all are.
+        sees_all: the filter of rows in steady sliding, too (see `seen_by`).
         uncorrected: the same rows at the position that the sensor reads; None: these are.
     """
 
@@ -108,6 +122,7 @@ class Dataset:
     rows: RowChoice
     scales: Scales
     crosses_free_play: bool = False
+    sees_all: bool = False
     uncorrected: "Dataset | None" = None
     cache: dict[tuple[str, Shape], FloatArray] = field(default_factory=dict, repr=False, compare=False)
     unfiltered: dict[tuple[str, Shape], FloatArray] = field(default_factory=dict, repr=False, compare=False)
@@ -208,6 +223,18 @@ class Dataset:
             return np.ones(len(self.regime), dtype=bool)
         chosen: BoolArray = self.regime == Regime.SLIDING if choice == "sliding" else self.regime != Regime.STUCK
         return chosen
+
+    def seen_by(self, choice: RowChoice) -> "Dataset":
+        """The rows as their filter sees them for a choice of them: for steady sliding, nothing of other regimes.
+
+        A stuck joint has any effort, and near reversals teeth fly: what the filter carried of it into steady sliding
+        would be told as friction there. Of rows near reversals it sees all.
+        """
+        sees_all = choice != "sliding"
+        if self.sees_all == sees_all or self.rows != "sliding":
+            return self
+        uncorrected = None if self.uncorrected is None else self.uncorrected.seen_by(choice)
+        return replace(self, sees_all=sees_all, uncorrected=uncorrected, cache={})
 
     def choice_for(self, effects: Sequence[Effect]) -> RowChoice:
         """The rows that a model of these effects is fitted to: wider than the study's where an effect needs it."""
@@ -360,9 +387,9 @@ class Dataset:
         largest = largest or float(np.abs(predicted).max(initial=0.0))
         rates = rates_of_change(predicted, self.samples, [trial.signals.rate_hz for trial in self.trials])
         trials = tuple(
-            Trial(
-                trial.signals,
-                trial.motion.having(
+            replace(
+                trial,
+                motion=trial.motion.having(
                     load_effort=load_effort[own],
                     inertia_beyond=beyond,
                     inertia=whole,
@@ -376,8 +403,6 @@ class Dataset:
                     late_s=late_s,
                     back_emf=back_emf,
                 ),
-                trial.picked,
-                trial.regime,
             )
             for trial, own, (beyond, whole, tip) in zip(self.trials, self.samples, inertias.T.tolist(), strict=True)
         )
@@ -459,10 +484,18 @@ class Dataset:
         return bool(np.ptp(values) > 0.0)
 
     def _filtered(self, start: int, full_rate: Sequence[FloatArray]) -> FloatArray:
-        """Filter and thin arrays (k, n) of some trials in a row, from the one of an index on; shape (rows, k)."""
+        """Filter and thin arrays (k, n) of some trials in a row, from the one of an index on; shape (rows, k).
+
+        Effort and columns are seen alike, so that the equation holds (modulating functions: Shinbrot 1957).
+        """
         trials = self.trials[start : start + len(full_rate)]
-        rates_hz = [trial.signals.rate_hz for trial in trials]
-        return low_pass_thinned(full_rate, self.cutoff_hz, rates_hz, [trial.picked for trial in trials])
+        rates_hz, picked = [trial.signals.rate_hz for trial in trials], [trial.picked for trial in trials]
+        whole = low_pass_thinned(full_rate, self.cutoff_hz, rates_hz, picked)
+        if self.sees_all or self.rows != "sliding":
+            return whole
+        sliding = np.concatenate([trial.regime for trial in trials]) == Regime.SLIDING
+        windowed = [trial.window * rows for trial, rows in zip(trials, full_rate, strict=True)]
+        return np.where(sliding[:, None], low_pass_thinned(windowed, self.cutoff_hz, rates_hz, picked), whole)
 
 
 def _side_by_side(lengths: Iterable[int]) -> list[slice]:

@@ -1,7 +1,7 @@
 """Columns that the measuring pipeline itself can produce, so that none of them is mistaken for physics.
 
-They stand in every diagnosis. A small delay looks like jerk; a sign smoothed by filtering or backlash looks like a
-difference of steep sigmoids. An effect that means one of these (see `Effect.standing_in`) is judged without it.
+They stand in every diagnosis: a small delay looks like jerk. An effect that means one of these (see
+`Effect.standing_in`) is judged without it.
 """
 
 import numpy as np
@@ -16,8 +16,7 @@ from compensator.lab.recordings.far_side import ABOUT_KNOWN
 from compensator.lab.recordings.recording import FloatArray
 from compensator.lab.rows.dataset import Dataset
 
-NAMES = ("jerk", "slow_sign", "fast_sign", "sign_rate")
-NEAR_REVERSALS = ("delay", "smoothing", "stiff_contact")
+NEAR_REVERSALS = ("delay", "smoothing", "stiff_contact", "slow_sign", "fast_sign", "sign_rate")
 KNOWN_PLAY = dict(zip(("known_play_less", "known_play", "known_play_more"), ABOUT_KNOWN, strict=True))  # not missing
 # shares of what the owner knows, as far as data sheets are off, and dampings of teeth that swing: a spring that hardly
 # swings would take what other causes leave
@@ -32,8 +31,7 @@ def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[
     reversals a delay looks like memory: there its own column stands too, the effort's second derivative, which is what
     a low-pass takes beside the delay, and contacts that give over the shortest distance that can be told: all do.
     """
-    stack = dataset.stack([_columns(trial.motion, trial.signals.rate_hz) for trial in dataset.trials])
-    named = dict(zip(NAMES, stack.T, strict=True))
+    named = {"jerk": dataset.stack(trial.motion.jerk[None] for trial in dataset.trials)[:, 0]}
     named |= _far_side_weight(dataset)
     named |= _known_stiffness(dataset)
     if dataset.facts.backlash_rad:
@@ -46,7 +44,8 @@ def nuisance_columns(dataset: Dataset, show_in: MotionRows = "sliding") -> dict[
         smoothing = dataset.stack(rate[None] for rate in rates)[:, 0]
         shortest = min(pre_sliding.shapes(dataset.trials[0].motion))
         stiff_contact = dataset.unchecked_columns(pre_sliding.EFFECT, [shortest])[0][:, 0]
-        named |= dict(zip(NEAR_REVERSALS, (delay, smoothing, stiff_contact), strict=True))
+        signs = dataset.stack([_signs(trial.motion, trial.signals.rate_hz) for trial in dataset.trials])
+        named |= dict(zip(NEAR_REVERSALS, (delay, smoothing, stiff_contact, *signs.T), strict=True))
     return named
 
 
@@ -80,14 +79,8 @@ def far_side_weight(motion: Motion) -> FloatArray:
     return lacking
 
 
-def _columns(motion: Motion, rate_hz: float) -> FloatArray:
-    slow = motion.velocity / motion.slow
-    sigmoids = [np.tanh(slow / width) for width in (1.0, 3.0, 10.0)]
-    return np.array(
-        [
-            motion.jerk,
-            sigmoids[0] - sigmoids[1],
-            sigmoids[1] - sigmoids[2],
-            rate_of_change(sigmoids[1], rate_hz),
-        ]
-    )
+def _signs(motion: Motion, rate_hz: float) -> FloatArray:
+    """Differences of steep sigmoids of the velocity, and the rate of one, shape (3, n)."""
+    sigmoids = [np.tanh(motion.velocity / motion.slow / width) for width in (1.0, 3.0, 10.0)]
+    rate = rate_of_change(sigmoids[1], rate_hz)
+    return np.array([sigmoids[0] - sigmoids[1], sigmoids[1] - sigmoids[2], rate])

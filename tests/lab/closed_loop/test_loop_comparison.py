@@ -69,7 +69,7 @@ def test_a_trial_that_was_never_fitted_is_judged_too(fit):
 
 
 def _without_rows(trial, wanted):
-    return replace(trial, picked=trial.picked[:0], regime=trial.regime[:0]) if wanted else trial
+    return replace(trial, picked=trial.picked[:0]) if wanted else trial
 
 
 def test_too_few_trials_are_not_held_out():

@@ -66,9 +66,7 @@ def test_what_noise_leaves_correlated_is_known_in_combination_only():
     ]
     loud, still = (recordings(Joint(stribeck_speed=3.0), Bench(noise=noise), quick, seed=4) for noise in (0.2, 0.001))
     (sentence,) = said(loud)
-    assert sentence.startswith(
-        "Coulomb friction, viscous friction and static minus Coulomb friction (Stribeck effect) "
-    )
+    assert sentence.startswith("Coulomb friction and static minus Coulomb friction (Stribeck effect) ")
     assert "slow motion: many rows" in sentence
     assert said(still) == []  # correlated they are all the same, but known
 

@@ -220,7 +220,7 @@ def test_a_long_recording_is_answered_in_time():
     assert diagnosed(made).verdict == "nothing"
 
 
-@pytest.mark.parametrize(("missing", "turned"), [(0.0, True), (0.12, False)], ids=["small beside it", "as large"])
+@pytest.mark.parametrize(("missing", "turned"), [(0.0, True), (0.16, False)], ids=["small beside it", "as large"])
 def test_a_small_effort_of_the_other_sign_is_no_turned_one_where_as_much_is_missing_anywhere(missing, turned):
     slow = Plan("slow", [(3.0, 0.01, -0.4)])
 

@@ -20,8 +20,8 @@ from tests.lab.diagnosis.test_diagnose import load_n_m
 from tests.lab.synthetic import FACTS, Joint, Law, Truth, recordings
 
 
-def fit_to(law: Law) -> Fit:
-    made = recordings(Joint(extra=law), seed=5)
+def fit_to(law: Law, seed: int = 5) -> Fit:
+    made = recordings(Joint(extra=law), seed=seed)
     return fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
 
 
@@ -36,7 +36,7 @@ def carried(x: Truth) -> np.ndarray:
 
 
 def test_friction_of_a_load_without_the_spring_that_is_missing_too_is_named_and_so_is_the_spring():
-    found = search(fit_to(carried))
+    found = search(fit_to(carried, seed=6))
     assert [step.effect for step in found.steps] == ["load_friction", "spring"]
     assert (found.last.verdict, found.last.remains) == ("nothing", False)
 

@@ -49,6 +49,6 @@ EFFECT = Effect(
     builds_on="effort",
     pipeline=True,
     efforts=("current", "torque"),  # what a drive measures; a duty or a voltage is what it was told
-    standing_in=frozenset({"jerk", "sign_rate"}),
+    standing_in=frozenset({"jerk"}),
     ends_within_scan=1,
 )

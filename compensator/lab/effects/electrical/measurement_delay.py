@@ -60,5 +60,5 @@ EFFECT = Effect(
     confused_with=("inertia",),
     builds_on="effort",
     pipeline=True,
-    standing_in=frozenset({"jerk", "sign_rate"}),
+    standing_in=frozenset({"jerk"}),
 )

@@ -30,6 +30,5 @@ EFFECT = Effect(
     confused_with=("stribeck", "weight_friction"),
     varies_with="load_kg",
     dry_friction=True,
-    standing_in=stribeck.EFFECT.standing_in,
     after=("stribeck", "weight_friction"),
 )

@@ -43,6 +43,5 @@ EFFECT = Effect(
     shape_names=("Stribeck speed", "Stribeck exponent"),
     shape_units=("{position}/s", "1"),
     confused_with=("viscous_quadratic",),
-    standing_in=frozenset({"slow_sign", "fast_sign"}),
     dry_friction=True,
 )
