@@ -15,6 +15,7 @@ from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates, co
 from compensator.lab.diagnosis.confirmation import LEAST_GAIN
 from compensator.lab.diagnosis.physical import TOLD, why_impossible
 from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, held_out_gain
 from compensator.lab.model.held_out_error import HeldOut
@@ -74,7 +75,8 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     alike = bool((fit.training == old.training).all())
     new = fit if alike else material.fit(effects, fit.shapes, beside=parent.effects)
     progress.enter(JUDGING)
-    before, after = held_out(old, rows), held_out(new, rows)
+    # as a diagnosis judges them
+    before, after = (held_out(one if rows == "sliding" else widened(one, rows), rows) for one in (old, new))
     gain = held_out_gain(before, after)
     starts = held_out_both(old, new) if any(one.breakaway for one in changed) else None
     impossible = next((found for name in added if (found := why_impossible(fit, name).words)), "")

@@ -58,7 +58,7 @@ def differences_by_run(fit: Fit, judged: HeldOut) -> list[ByRun]:
         return []
     dataset = fit.dataset
     direction = dataset.stack([trial.motion.direction[None] for trial in dataset.trials])[judged.rows, 0]
-    columns = {DRY_FRICTION: direction, CONSTANT: np.ones(len(direction)), **_untold_weight(fit, judged.rows)}
+    columns = {DRY_FRICTION: direction, CONSTANT: dataset.constant[judged.rows], **_untold_weight(fit, judged.rows)}
     together = np.column_stack(list(columns.values()))
     index = dataset.trial_index[judged.rows]
     found = {

@@ -58,8 +58,8 @@ def wandering_of(constants: Constants, most: float = PLAIN.wandering) -> Wanderi
         constants: of the rows.
         most: chance in noise alone up to which it is none.
     """
-    direction = constants.direction
-    whole = {DRY_FRICTION: (constants.friction, direction), OFFSET: (rms(constants.effort), np.ones(len(direction)))}
+    seen = constants.dataset.constant[constants.rows]
+    whole = {DRY_FRICTION: (constants.friction, constants.direction * seen), OFFSET: (rms(constants.effort), seen)}
     found, scatter = [], None
     for what, (size, sign) in whole.items():
         trials = cells_of(constants, constants.weights * size * sign) if size > 0.0 else []

@@ -73,7 +73,7 @@ def fit_sliding(
 
 
 def widened(fit: Fit, rows: RowChoice) -> Fit:
-    """The same model on another choice of rows of the same trials, as their filter sees them, its shapes kept."""
+    """The same model on another choice of rows of the same trials, as `seen_by` it, its shapes kept."""
     dataset = fit.dataset.seen_by(rows)
     chosen = dataset.in_regimes(rows) & np.isin(dataset.trial_index, trained_trials(dataset, fit.training))
     if dataset is fit.dataset and (chosen == fit.training).all():
@@ -82,7 +82,7 @@ def widened(fit: Fit, rows: RowChoice) -> Fit:
 
 
 def seeing_all(fit: Fit) -> Fit:
-    """The same model on the same rows, as their filter sees stops and reversals beside them, its shapes kept."""
+    """The model refitted to the same rows, whose filter sees stops and reversals beside them; its shapes are kept."""
     dataset = fit.dataset.seen_by("moving")
     return fit if dataset is fit.dataset else fit_model(dataset, fit.names, fit.training, fit.shapes)
 

@@ -111,7 +111,7 @@ class Dataset:
         rows: which regimes count.
         scales: of all trials.
         crosses_free_play: rows near a crossing of the free play are counted, since nearly all are.
-        sees_all: the filter of rows in steady sliding, too (see `seen_by`).
+        sees_all: rows in steady sliding see all samples, too (see `seen_by`).
         uncorrected: the same rows at the position that the sensor reads; None: these are.
     """
 
@@ -172,6 +172,11 @@ class Dataset:
         """By which other trials have columns as these ones have them, or some of these alone."""
         return replace(self.scales, largest_effort=self.trials[0].motion.largest_effort)
 
+    @cached_property
+    def constant(self) -> FloatArray:
+        """1 as the rows see it, shape (N,): less where their filter sees less than all."""
+        return self.stack([np.ones((1, len(trial.motion.time_s))) for trial in self.trials])[:, 0]
+
     @property
     def is_predicted(self) -> bool:
         """Whether a model's prediction is in the motions (see `with_prediction`)."""
@@ -225,10 +230,10 @@ class Dataset:
         return chosen
 
     def seen_by(self, choice: RowChoice) -> "Dataset":
-        """The rows as their filter sees them for a choice of them: for steady sliding, nothing of other regimes.
+        """The same rows, of which a filter sees no more than the choice asks for; those of a wider study see all.
 
-        A stuck joint has any effort, and near reversals teeth fly: what the filter carried of it into steady sliding
-        would be told as friction there. Of rows near reversals it sees all.
+        In steady sliding that is nothing of other regimes. A stuck joint has any effort, and near reversals teeth fly:
+        what the filter carried of it into steady sliding would be told as friction there.
         """
         sees_all = choice != "sliding"
         if self.sees_all == sees_all or self.rows != "sliding":

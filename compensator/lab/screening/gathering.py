@@ -171,7 +171,7 @@ def _random_effects(gathered: Candidates) -> list[RandomEffect]:
     trial = np.unique(trial, return_inverse=True)[1]
     ends = np.cumsum([0, *(len(term.coefficients) for term in fit.terms)])
     shares = [fit.columns[rows, a:b] @ fit.coefficients[a:b] for a, b in pairwise(ends)]
-    shares = [share for share in shares if np.ptp(share) > 0.0] + [np.full(len(trial), fit.dry_friction)]
+    shares = [share for share in shares if np.ptp(share) > 0.0] + [fit.dry_friction * dataset.constant[rows]]
     return [
         *(RandomEffect(gathered.weights * share, trial) for share in shares),
         RandomEffect(gathered.weights * fit.static_friction[rows], np.asarray(stroke, dtype=np.int64).ravel()),

@@ -10,8 +10,7 @@ def test_from_what_slides_most_of_the_way_to_what_hardly_does():
     dataset = fitted().dataset
     columns = hysteresis_columns(dataset)
     assert columns.shape == (len(dataset.effort), len(SHARES))
-    seen = dataset.stack([np.ones((1, len(trial.motion.time_s))) for trial in dataset.trials])
-    sliding = np.mean(np.abs(columns) > 0.99 * seen, axis=0)
+    sliding = np.mean(np.abs(columns) > 0.99 * dataset.constant[:, None], axis=0)
     assert sliding[0] > 0.5
     assert 0.2 < sliding[1] < 0.4
     assert sliding[2] < 0.1
