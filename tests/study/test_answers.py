@@ -18,7 +18,7 @@ from bench.study.diagnosis.search import search
 from bench.study.effects import effects_catalogue
 from bench.study.errors import StudyError
 from bench.study.ladder import ladder
-from bench.study.material import load_model
+from bench.study.material import load, load_model
 from bench.study.models.base import StudyModel
 from bench.study.models.study import Study
 from compensator.lab.diagnosis import diagnosis as lab
@@ -183,6 +183,13 @@ def test_pictures_and_residuals_are_drawable(story):
     for against in story["compare"].residual_against:
         for group in against.groups:
             assert len({len(one) for one in (group.x, group.mean, group.low, group.high, group.count)}) == 1
+
+
+def test_effort_over_time_does_not_fall_where_steady_sliding_ends(store, study, story):
+    """Rows in steady sliding are judged on what their filter sees of it; a plot over time shows all."""
+    whole = load(store, study.study_id).dataset.seen_by("moving")
+    shown = np.concatenate([one.measured for one in story["compare"].series])
+    assert shown == pytest.approx(whole.effort, rel=1e-6, abs=1e-9)
 
 
 def test_parameters_have_units_and_intervals(story):

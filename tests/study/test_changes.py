@@ -6,8 +6,11 @@ from bench.study import changes
 from bench.study.changes import add_effect, drop_effect
 from bench.study.create import create_study
 from bench.study.ladder import ladder
+from bench.study.material import load_model
 from compensator.lab.diagnosis.physical import TOLD, Impossible
+from compensator.lab.model.fit import widened
 from compensator.lab.model.gain import Gain
+from compensator.lab.model.validation import held_out
 
 
 @pytest.mark.parametrize("hold_out", [(), ("load_kg=0.2",)], ids=["one left out in turn", "a load held out"])
@@ -24,6 +27,9 @@ def test_an_effect_near_reversals_is_added_and_dropped_on_the_same_rows(store, e
     assert dropped.before.held_out == pytest.approx(added.after.held_out, rel=1e-6)
     assert dropped.after.held_out == pytest.approx(added.before.held_out, rel=1e-3)
     assert (1.0 - dropped.gain) == pytest.approx(1.0 / (1.0 - added.gain), rel=1e-3)
+    material, row = load_model(store, study, added.model_id)
+    seen = widened(material.fit_of(row), "moving")  # as a diagnosis judges it
+    assert added.after.held_out == pytest.approx(held_out(seen, "moving").relative, rel=1e-6)
 
 
 @pytest.mark.parametrize(

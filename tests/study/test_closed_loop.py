@@ -12,7 +12,9 @@ from bench.study.closed_loop import keep_motion_errors, simulate
 from bench.study.create import create_study
 from bench.study.errors import StudyError
 from bench.study.ladder import ladder
+from bench.study.material import load_model
 from bench.study.report.report import report_html
+from compensator.lab.model.fit import seeing_all
 from tests.lab.synthetic import Joint, plans
 from tests.study.conftest import imported
 
@@ -48,6 +50,14 @@ def test_series_show_both_motions(store, study_id, models):
     assert len(series.time_s) == len(series.measured) == len(series.simulated) >= 300
     assert series.measured != series.simulated
     assert series.measured == pytest.approx(series.simulated, abs=0.05)
+
+
+def test_what_is_moved_was_fitted_to_rows_that_see_stops_and_reversals(store, study_id, models):
+    material, row = load_model(store, study_id, models[1])
+    fit = material.fit_of(row)
+    told = [one.before for one in simulate(store, study_id, models[1], refined=True).refined.parameters]
+    assert told == pytest.approx(seeing_all(fit).coefficients.tolist())
+    assert told != pytest.approx(fit.coefficients.tolist())
 
 
 def test_refinement_says_what_it_gains_and_keeps_nothing(store, study_id, models):

@@ -16,7 +16,7 @@ SLIDE_MARGIN_S = 0.04
 STUCK_AFTER_S = 0.1
 # of the time in which a joint is slow: it passes through rest with half of it below half of `slow`, and turns with 0.7
 STANDING_SHARE = 0.6
-STANDING_PERIODS = 0.5  # of the cut-off, to either side: so far the filter carries a step of friction
+CARRIED_PERIODS = 0.5  # of the cut-off, to either side: so far the filter carries a step of friction
 TRANSIENT_S = 0.15
 
 
@@ -45,7 +45,7 @@ def classify(velocity: FloatArray, slow: float, rate_hz: float, cutoff_hz: float
     window = 2 * round(0.5 * STUCK_AFTER_S * rate_hz) + 1
     stuck = minimum_filter1d((speed < slow).astype(np.uint8), window) > 0
     regime[maximum_filter1d(stuck.astype(np.uint8), window) > 0] = Regime.STUCK
-    standing = _standing(speed, slow, round(STANDING_PERIODS / cutoff_hz * rate_hz))
+    standing = _standing(speed, slow, round(CARRIED_PERIODS / cutoff_hz * rate_hz))
     regime[standing & (regime == Regime.TRANSIENT)] = Regime.STUCK
     return regime
 

@@ -17,14 +17,13 @@ from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.processing import DIFFERENTIATION_FACTOR, SATURATED_DUTY, Signals, make_signals
 from compensator.lab.recordings.pushed import pushed
 from compensator.lab.recordings.recording import SESSION_START, FloatArray, Recording
-from compensator.lab.recordings.regimes import Regime, classify, near_flank_change
+from compensator.lab.recordings.regimes import CARRIED_PERIODS, Regime, classify, near_flank_change
 from compensator.lab.recordings.reversals import start_rate
 from compensator.lab.rows.dataset import Dataset, Processing, Scales, Trial
 
 SLOW_SHARE = 0.02  # of the 95 % quantile of speed: below, the direction of motion is uncertain
 NOISE_FACTOR = 3.0  # slow is at least this many standard deviations of the velocity noise
 TINY_SHARE = 0.01  # of slow: the sign of velocity is never smoothed less, so that it stays differentiable
-CARRIED_PERIODS = 0.5  # of the cut-off: so far the filter carries a step of friction
 ROWS_PER_CUTOFF_PERIOD = 2.5  # Nyquist rate and a margin for the filter's slope: at 2.0 the errors alias
 NUMERIC_CONDITIONS = ("load_kg", "arm_m", SESSION_START)
 FEWEST_ROWS = 40

@@ -65,7 +65,8 @@ def test_one_run_with_another_zero():
     fit = fitted({}, held=(4,), zeros_n_m={4: -0.05})
     found, name = by_run(fit), fit.dataset.trials[4].signals.recording.name
     assert (found.what, found.trial) == (CONSTANT, name)
-    assert found.difference == pytest.approx(-0.05, rel=0.1)
+    # of rows that see all: those beside stops show less of a constant, as of all else
+    assert found.difference == pytest.approx(-0.05, rel=0.02)
     words = by_run_in_words(found, "N m")
     assert re.search(rf"^A constant force, or the zero of the effort, differs .* in '{name}' \(-0.0", words)
     assert words.endswith("a floor for any model with one zero for all runs, unless what is missing makes it.")

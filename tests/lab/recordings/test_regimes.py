@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.recordings.regimes import (
-    STANDING_PERIODS,
+    CARRIED_PERIODS,
     Regime,
     classify,
     near_flank_change,
@@ -12,7 +12,7 @@ from compensator.lab.recordings.regimes import (
 
 RATE_HZ = 200.0
 CUTOFF_HZ = 20.0
-MARGIN = round(STANDING_PERIODS / CUTOFF_HZ * RATE_HZ)
+MARGIN = round(CARRIED_PERIODS / CUTOFF_HZ * RATE_HZ)
 
 
 def at(regime: np.ndarray, time_s: float) -> Regime:

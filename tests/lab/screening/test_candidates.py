@@ -90,6 +90,13 @@ def test_columns_are_weighted_like_the_effort(gathered):
     assert left_share(wider, gathered.fit.dataset.columns(effect_named("spring"), ())[:, 0]) < 1e-6
 
 
+def test_a_force_that_differs_from_trial_to_trial_shows_less_beside_stops(gathered):
+    *_, constant, _ = gathering._random_effects(gathered)
+    share = constant.share / gathered.weights
+    assert share == pytest.approx(gathered.fit.dry_friction * gathered.fit.dataset.constant[gathered.rows])
+    assert share.min() < 0.7 * share.max()
+
+
 def test_friction_that_differs_from_trial_to_trial_is_noise(monkeypatch):
     """Else whatever goes with some of the trials, as their load or their warmth, would explain it."""
     made = []

@@ -1,9 +1,11 @@
 """The evidence of whitened rows: of mere noise, and of noise with something in it."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
-from scipy.stats import binom
+from scipy.stats import binom, f
 
 from compensator.lab.screening.base import Base, Block
 from compensator.lab.screening.evidence import Screening, kept_evidence, screen
@@ -39,6 +41,19 @@ def test_false_alarms_on_noise_are_as_rare_as_they_say():
         p_values.append(screened([Base(bases[0].basis, bases[0].residual / np.sqrt(known))], blocks).p_value)
     assert np.sum(np.array(p_values) <= 0.01) <= binom.ppf(0.995, sets, 0.01)
     assert np.sum(np.array(p_values) <= 0.5) >= binom.ppf(0.005, sets, 0.5)  # nor does it never alarm
+
+
+@pytest.mark.parametrize(("shares", "degrees"), [((1.0, 0.0), 60.0), ((0.0, 1.0), 4.0), ((0.5, 0.5), 15.0)])
+def test_a_direction_is_known_as_well_as_the_noise_that_it_has(shares, degrees):
+    """Of two sources, known from 60 and from 4 squares (Satterthwaite 1946)."""
+    noise = SimpleNamespace(
+        freedoms=np.array([60.0, 4.0]), shares=lambda found: np.outer(shares, np.ones(found.shape[1]))
+    )
+    bases, blocks = problem(2, planted=0.05)
+    for one in screen(bases, blocks, noise).evidence:
+        direction = one.direction @ bases[0].residual
+        rank = one.block.columns.shape[1]
+        assert one.p_value == pytest.approx(f.sf(direction**2 / rank, rank, degrees), rel=1e-6)
 
 
 def test_of_one_block_the_chance_among_all_is_its_own():
