@@ -68,15 +68,19 @@ def test_a_change_is_undone_from_any_step_and_done_again(service, open_page, stu
     page.get_by_role("button", name="Undo this change").wait_for()
 
 
-def test_a_change_is_undone_while_its_comparison_is_still_under_way(open_page, studies, changed):
+@pytest.mark.parametrize("asked", ["compare", "error-map"])
+def test_a_change_is_undone_while_its_comparison_is_still_under_way(open_page, studies, changed, asked):
     page, held = open_page("#study", width=1440), []
-    intercept(page, "**/compare?*", lambda route: held.append(route))
+    intercept(page, f"**/{asked}?*", lambda route: held.append(route))
     page.goto(page.url.split("#")[0] + f"#study/{studies[0]}/result")
+    page.get_by_role("button", name="Undo + viscous asymmetry").wait_for()
+    while not held:
+        page.wait_for_timeout(100)
     page.get_by_role("button", name="Undo + viscous asymmetry").click()
     page.wait_for_timeout(500)  # in which the model was removed, and its comparison asked for what is gone
     for one in held:
         one.continue_()
-    page.unroute("**/compare?*")
+    page.unroute(f"**/{asked}?*")
     page.get_by_text("Undone: model").wait_for()
 
 

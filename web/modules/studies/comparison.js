@@ -11,7 +11,7 @@ import { allShown, milli, shownUnit, titled } from "../ui/units.js";
 
 const DIRECTIONS = { forward: "blue", backward: "red", both: "green" };
 
-// linked: with the plot beside it, which shows a moment that is chosen here
+// linked: with the plot beside it, which shows a moment that is chosen here. Resolves when nothing more is asked about the model
 export function comparison(place, compared, { path, linked }) {
   const { series } = linked;
   const [loop, spots, moments, drivers] = ["div", "div", "div", "div"].map((tag) => h(tag));
@@ -31,11 +31,12 @@ export function comparison(place, compared, { path, linked }) {
     moments.scrollIntoView({ block: "nearest" });
     if (found.items.length) series.showMoment(found.items[0], { focus: false });
   }, { busy: "Looking …" });
-  attempt(spots, async () => errorMap(spots, await get(`${path}/error-map`, { model_id: compared.model_id }), ask, linked), { busy: "Looking …" });
+  const mapped = attempt(spots, async () => errorMap(spots, await get(`${path}/error-map`, { model_id: compared.model_id }), ask, linked), { busy: "Looking …" });
   against.addEventListener("toggle", () => {
     if (!against.open || drivers.children.length) return;
     for (const driver of compared.residual_against) driverPlot(drivers, driver, { effort: compared.effort, linked, ask });
   });
+  return mapped;
 }
 
 // the bin around a point of a line: half-way to its neighbours, on the side of its direction

@@ -85,7 +85,7 @@ class Study {
     this.linked?.close();
     this.linked = new Linked(this.path, new SeriesPlot(this.parts.series, compared));
     replace(this.parts.parameters, parameterTables(compared), modelButtons(this.study, compared));
-    comparison(this.parts.compare, compared, { path: this.path, linked: this.linked });
+    this.mapped = comparison(this.parts.compare, compared, { path: this.path, linked: this.linked });
   }
 
   askDiagnosis() {
@@ -158,6 +158,7 @@ class Study {
       this.model = null; // a comparison of it that is still under way is not shown, and asks nothing more of it
       try {
         await this.comparing;
+        await this.mapped;
         await remove(`${this.path}/models/${left}`);
       } catch (error) {
         this.model = left;
