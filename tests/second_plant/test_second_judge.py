@@ -10,6 +10,7 @@ from bench.errors import ParameterError
 from bench.evaluation.blind.result import Result
 from bench.evaluation.blind.second_judge import SECOND_FAMILIES, draw_second, judge_second, second_items_of
 from bench.evaluation.blind.second_plant import (
+    ABOVE_1,
     ABSORBED,
     KNOWN,
     LAWS,
@@ -53,9 +54,20 @@ def test_what_the_catalogue_calls_a_joints_own_friction_is_no_wrong_name():
 
     assert textbook.own == ()
     assert {"viscous_power", "pre_sliding", "position_periodic_friction"} <= set(foreign.own)
-    assert set(LAWS.values()) <= set(catalogue())
+    assert {*LAWS.values(), *ABOVE_1.values()} <= set(catalogue())
     # the level is one function of the speed, however it bends: nothing of it is late
     assert LAWS["film_rad_s"] == LAWS["viscous_power"] == "viscous_power"
+
+
+def test_an_exponent_above_1_is_what_the_catalogue_calls_quadratic():
+    joint = second_joint(21, (), (), "textbook")
+    thinning, churning = (
+        replace(joint, drawn=replace(joint.drawn, physics=joint.drawn.physics._replace(viscous_power=power)))
+        for power in (0.7, 1.3)
+    )
+
+    assert thinning.own == ("viscous_power",)
+    assert churning.own == ("viscous_quadratic",)
 
 
 def test_the_lab_sees_recordings_and_a_rig_without_what_is_hidden():

@@ -59,6 +59,9 @@ LAWS: dict[str, str] = {
 }
 """Quantity of a joint's own friction that is not as in textbooks -> effect of the catalogue that it is."""
 
+ABOVE_1: dict[str, str] = {"viscous_power": "viscous_quadratic"}
+"""The same for an exponent above 1, which the catalogue's power law has not."""
+
 KNOWN = tuple(name for name in NAMES if name not in ABSORBED)
 OUTSIDE = tuple(FOREIGN)
 FIRST_SIZE, LEAST_RATIO = 0.1, 0.003
@@ -90,7 +93,9 @@ class SecondJoint:
     def own(self) -> tuple[str, ...]:
         """Effects of the catalogue that its friction has by laws of its own, whatever it hides."""
         book, own = self.drawn.by_the_book().physics, self.drawn.physics
-        return tuple(name for quantity, name in LAWS.items() if getattr(own, quantity) != getattr(book, quantity))
+        differs = [quantity for quantity in LAWS if getattr(own, quantity) != getattr(book, quantity)]
+        quick = {quantity for quantity in ABOVE_1 if getattr(own, quantity) > 1.0}
+        return tuple(ABOVE_1[one] if one in quick else LAWS[one] for one in differs)
 
     @property
     def sizes(self) -> tuple[float, ...]:

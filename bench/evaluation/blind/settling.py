@@ -79,7 +79,7 @@ class _Rounds:
     @property
     def named(self) -> tuple[str, ...]:
         """The class that is named."""
-        return self.diagnosis.classes[0] if self.diagnosis.verdict == "missing" else ()
+        return self.diagnosis.named
 
     @property
     def is_sure(self) -> bool:

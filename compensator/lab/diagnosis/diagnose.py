@@ -5,7 +5,6 @@ a robust score, its null by sign flips of whole stretches), what is it called (l
 and shapes), does it help (held-out error, resampled by whole trials).
 """
 
-from collections.abc import Collection
 from math import nan
 
 from compensator.lab import progress
@@ -76,7 +75,6 @@ def diagnose(fit: Fit) -> Diagnosis:
         verdict=first.verdict,
         sentence=(f"{at_rest[0].text} In motion: " if sticks else "")
         + first.sentence
-        + _hidden_rivals(first, fit, families.left_out)
         + ("" if too_short else _nearest(first, ranked))
         + "".join(f" {note.text}" for note in hiding if first.verdict == "nothing"),
         p_value=first.p_value,
@@ -109,18 +107,6 @@ def _nearest(first: Answer, ranked: list[Candidate]) -> str:
     """What comes nearest, as a further sentence, where nothing is confirmed; empty where nothing comes near."""
     nearest = nearest_one(ranked) if first.verdict == "nothing" else None
     return "" if nearest is None else f" {nearest_in_words(nearest)}"
-
-
-def _hidden_rivals(first: Answer, fit: Fit, left_out: Collection[str]) -> str:
-    """What no trial can tell from the effect that is named, as long as a free scale of the model hides it."""
-    if first.verdict != "missing":
-        return ""
-    name = first.candidates[0].effect.name
-    return "".join(
-        f" It may as well be {one.in_sentence}, which the free scale of {' and '.join(scales)} hides."
-        for one in map(effect_named, left_out)
-        if name in one.confused_with and (scales := [scale for scale in one.hidden_by if scale in fit.names])
-    )
 
 
 def _data_problem(fit: Fit, problem: str) -> Diagnosis:

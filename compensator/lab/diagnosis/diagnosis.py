@@ -104,3 +104,9 @@ class Diagnosis:
     left_out: dict[str, str] = field(default_factory=dict)
     too_short: bool = False
     remains: bool = False
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """Effects of the class that is named, without those that no trial can tell from it; none where none is."""
+        judged = {one.effect.name for one in self.candidates}
+        return tuple(name for name in self.classes[0] if name in judged) if self.verdict == "missing" else ()

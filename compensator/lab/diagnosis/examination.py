@@ -10,7 +10,7 @@ from compensator.lab.diagnosis.confirmation import is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.physical import POSSIBLE, why_impossible
 from compensator.lab.diagnosis.pictures import picture_of
-from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.effects.catalogue import candidates, effect_named
 from compensator.lab.effects.effect import MotionRows
 from compensator.lab.model.fit import fit_effects, fit_model, fit_sliding
 from compensator.lab.model.fitted import Fit
@@ -58,6 +58,7 @@ def examine(fit: Fit, gathered: Candidates, screening: Screening, screened: list
     for index, item in enumerate(evidence):
         alike = _alike(item, spans)
         rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, possible, alike)}
+        rivals |= _hidden(fit, item.block.name)
         found.append(
             Candidate(
                 effect=effect_named(item.block.name),
@@ -146,6 +147,15 @@ def _too_near(item: Evidence, evidence: list[Evidence], alike: dict[str, float])
     """Effects that speak for themselves, and that stand too near for a name to be given without them."""
     paying = (other.block.name for other in evidence if other is not item and other.score > 0.0)
     return {name for name in paying if detectability(item, alike.get(name, 0.0)) < NAMED_ALONE}
+
+
+def _hidden(fit: Fit, name: str) -> set[str]:
+    """Effects that a free scale of the model hides, which no trial can tell from one: beside that, they are the same."""
+    return {
+        one.name
+        for one in candidates(fit.names, fit.dataset.facts)
+        if name in one.confused_with and any(scale in fit.names for scale in one.hidden_by)
+    }
 
 
 def detectability(item: Evidence, correlation: float) -> float:

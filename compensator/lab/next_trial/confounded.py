@@ -12,7 +12,7 @@ def rivals_of(diagnosis: Diagnosis) -> list[Candidate]:
     Where nothing is sure, starts from rest may speak for an effect while motion speaks for none: they need trials of
     their own, so that then these are the rivals.
     """
-    named = set(diagnosis.classes[0]) if diagnosis.verdict == "missing" else set()
+    named = diagnosis.named
     first = diagnosis.candidates[:1]
     if first and not named:
         from_rest = [one for one in diagnosis.candidates if one.rows == "breakaway" and _speaks_for_itself(one)]
@@ -29,7 +29,7 @@ def _speaks_for_itself(candidate: Candidate) -> bool:
 
 def several(diagnosis: Diagnosis) -> bool:
     """Whether a class of several effects is named."""
-    return diagnosis.verdict == "missing" and len(diagnosis.classes[0]) > 1
+    return len(diagnosis.named) > 1
 
 
 def shows_from_rest(diagnosis: Diagnosis) -> bool:

@@ -74,10 +74,12 @@ def test_a_planted_effect_is_named_first(name):
     assert found.data_problems == []
 
 
-def test_what_the_free_scale_of_gravity_hides_is_said_beside_the_name():
-    hidden = "It may as well be friction while back-driven, which the free scale of gravity hides."
-    assert hidden in diagnosis_of_planted("load_friction").sentence
-    assert "may as well" not in diagnosis_of_planted("weight_friction").sentence
+def test_what_the_free_scale_of_gravity_hides_is_of_the_class_that_is_named():
+    found = diagnosis_of_planted("load_friction")
+    assert "back_driving_friction" in found.classes[0]
+    assert "cannot tell it from friction while back-driven" in found.sentence
+    assert found.named == ("load_friction",)
+    assert "back_driving_friction" not in diagnosis_of_planted("weight_friction").classes[0]
 
 
 def bristles(x, distance_rad: float = 0.01) -> np.ndarray:

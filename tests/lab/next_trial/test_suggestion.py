@@ -98,7 +98,7 @@ def test_it_is_all_the_same_to_the_truth_whether_what_imitates_it_is_a_rival_alr
 
 def test_effects_that_may_come_up_later_are_told_apart_from_the_rivals_too(fit, diagnosis):
     found = suggest(fit, diagnosis, options(HEAVY), most=1)
-    named = set(diagnosis.classes[0])
+    named = set(diagnosis.named)
     unforeseen = [pair for pair in found.pairs if pair.rival not in named]
     assert {pair.true for pair in unforeseen} == named
     assert found.picks[0].after == pytest.approx(min(pair.after for pair in found.pairs))

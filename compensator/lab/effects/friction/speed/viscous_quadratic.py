@@ -14,7 +14,10 @@ def columns(motion: Motion, _: Shape) -> FloatArray:
 EFFECT = Effect(
     name="viscous_quadratic",
     title="Quadratic viscous friction",
-    physics=("Drag that grows with the square of speed: churning of grease, air drag, turbulence."),
+    physics=(
+        "Drag that grows with the square of speed: churning of grease, air drag, turbulence. It stands for other "
+        "powers above 1, too."
+    ),
     equation=r"F_{q}\,\dot q |\dot q|",
     columns=columns,
     parameters=(Parameter("quadratic friction", "{effort} s2/{position}2", 0.0),),  # else it stands for a power law
