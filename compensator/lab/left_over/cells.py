@@ -1,9 +1,10 @@
 """What wanders in time, and all that scatters beside it, on rows of a stroke that are taken together.
 
 What scatters in every joint has a covariance of its own: noise forgets at once or within half a second, friction along
-the path within some percent of the travel, and static friction is another one after each stop. Near reversals, where
-teeth fly and pre-sliding comes up, rows scatter more, and in each stroke in a way of its own: the more, the more
-reversals there are and the quicker, as in a chirp, so that each trial has its own scale of that.
+the path within some percent of the travel, static friction is another one after each stop, and all that is constant in
+a trial is another one in the next. Near reversals, where teeth fly and pre-sliding comes up, rows scatter more, and in
+each stroke in a way of its own: the more, the more reversals there are and the quicker, as in a chirp, so that each
+trial has its own scale of that.
 """
 
 from collections.abc import Sequence
@@ -53,7 +54,8 @@ def cells_of(constants: Constants, column: FloatArray) -> list[CellsOfTrial]:
         time_s, gone = mean.plain(times_s[own]), mean.plain(path)
         own_static = mean.of(static[own][:, None])[:, 0]
         turned = np.sign(mean.plain(column[own]))
-        kernels = _kernels(mean.size, turned, time_s, gone, cells[0], own_static, lengths)
+        way = np.sign(mean.plain(constants.direction[own]))
+        kernels = _kernels(mean.size, turned, way, time_s, gone, cells[0], own_static, lengths)
         if near.any():
             times = _power(base.residual[own[near[own]]]) / usual
             kernels = np.insert(kernels, 1, times * _near_reversals(mean.size, cells[0], cells[2]), axis=0)
@@ -87,6 +89,7 @@ class _Mean:
 def _kernels(
     size: FloatArray,
     turned: FloatArray,
+    way: FloatArray,
     time_s: FloatArray,
     path: FloatArray,
     stroke: IntArray,
@@ -96,17 +99,20 @@ def _kernels(
     """Covariances of the cells (c,) by each component of unit size, what wanders last; (k, c, c).
 
     Noise does not know which way friction points (`turned`), and changes its sign in these cells where that does.
+    What is constant in a trial is another friction or another force, by the `way` of motion.
     """
     apart_s = np.abs(np.subtract.outer(time_s, time_s))
-    way = np.abs(np.subtract.outer(path, path))
+    between = np.abs(np.subtract.outer(path, path))
     same = np.equal.outer(stroke, stroke)
     both = np.outer(size, size)
     return np.array(
         [
             np.eye(len(size)),
             *(np.outer(turned, turned) * np.exp(-apart_s / memory_s) for memory_s in NOISE_LASTS_S),
-            *(both * same * np.exp(-way / length) for length in lengths),
+            *(both * same * np.exp(-between / length) for length in lengths),
             np.outer(static, static) * same,
+            both,
+            both * np.outer(way, way),
             both * np.exp(-apart_s / LASTS_S),
         ]
     )

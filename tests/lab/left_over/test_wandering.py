@@ -151,3 +151,13 @@ def test_long_trials_have_longer_cells_and_of_many_trials_some_are_looked_at(mon
     strokes = max(len(np.unique(trial.motion.strokes.index)) for trial in constants.dataset.trials)
     assert len(trials) <= 3
     assert max(len(trial.time_s) for trial in trials) <= 11 + strokes
+
+
+def test_friction_that_is_another_one_in_each_trial_does_not_wander():
+    """That is scatter from trial to trial, which every term of a model has."""
+    random = np.random.default_rng(11)
+
+    def extra(x):
+        return 0.03 * COULOMB_N_M * random.standard_normal() * np.sign(x.v)
+
+    assert judged(fitted(extra)) is None
