@@ -219,8 +219,12 @@ def model_of(store: Store, study_id: int, model_id: int | None) -> ModelRow:
     models = store.models(study_id)
     chosen = models[-1:] if model_id is None else [model for model in models if model.id == model_id]
     if not chosen:
-        known = ", ".join(str(model.id) for model in models) or "none"
-        raise StudyError(f"study {study_id} has no model {model_id or ''}; its models are: {known}")
+        if not models:
+            raise StudyError(
+                f"study {study_id} has no model, since making it was ended; remove it, and create it again"
+            )
+        known = ", ".join(str(model.id) for model in models)
+        raise StudyError(f"study {study_id} has no model {model_id}; its models are: {known}")
     return chosen[0]
 
 

@@ -153,7 +153,7 @@ REFUSED = {
     ),
     "a jitter for motion": Bad(
         every(put("position_rad", lambda x: 1e-4 * np.round(np.random.default_rng(0).random(len(x))))),
-        "rows where the joint moves faster than",
+        "rows count, and at least 40 are needed: the joint moves faster than",
     ),
     "saturated": Bad(
         every(add("duty", lambda c: np.sign(c["torque_n_m"]))), "duty is at its limit in 100% of the samples"

@@ -184,6 +184,7 @@ def at_rest_motion(fit: Fit, motion: Motion, index: IntArray, position: FloatArr
         effort_rate=nothing,
         temperature_c=motion.temperature_c[index],
         supply_v=motion.supply_v[index],
+        measured_load=np.broadcast_to(motion.measured_load, motion.time_s.shape)[index],
         start_rate=np.nan,  # what it does to starts, each share says by its onset
     )
     load = nothing

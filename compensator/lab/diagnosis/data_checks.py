@@ -179,8 +179,8 @@ def _unused(fit: Fit) -> list[str]:
     if not idle:
         return []
     return [
-        f"not used, since the joint does not move in any usable row of theirs: {', '.join(idle)}; record motion, or "
-        "leave them out"
+        f"not used, since the joint does not move in any usable row of theirs: {', '.join(idle)}; record motion, with "
+        "the duty below its limit, or leave them out"
     ]
 
 

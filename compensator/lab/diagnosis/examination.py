@@ -150,7 +150,7 @@ def _too_near(item: Evidence, evidence: list[Evidence], alike: dict[str, float])
 
 
 def _hidden(fit: Fit, name: str) -> set[str]:
-    """Effects that a free scale of the model hides, which no trial can tell from one: beside that, they are the same."""
+    """Effects that a free scale of the model hides, which no trial can tell from one of that name."""
     return {
         one.name
         for one in candidates(fit.names, fit.dataset.facts)

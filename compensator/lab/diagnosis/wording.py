@@ -63,10 +63,13 @@ def nothing_in_words(p_value: float, stretches: int | None = None) -> str:
 
 
 def helps_in_words(candidate: Candidate) -> Note:
-    """What is no answer, as noise alone would look as strong, and lowers the error on other trials all the same."""
+    """What is no answer, as noise alone may look as strong, and lowers the error on other trials of these."""
     gain, effect = candidate.gain, candidate.effect
     told = f"({gain.in_words(candidate.before, candidate.after)}; {chance_in_words(candidate.p_value)})"
-    text = f"{effect.title} lowers the held-out error all the same, for sure {told}: add it, and see what it leaves."
+    text = (
+        f"{effect.title} lowers the held-out error of these trials {told}, but noise alone may do as well: add it, and "
+        "see whether later trials say the same."
+    )
     return Note(
         "helps", text, {"effect": effect.name, "gain": gain.value, "gain_low": gain.low, "gain_high": gain.high}
     )

@@ -66,6 +66,8 @@ def is_peak(values: FloatArray) -> BoolArray:
     At the ends, where one side is not known, none is: power that only rises towards the slow end is noise.
     """
     peaks = np.zeros(len(values), dtype=bool)
+    if len(values) <= 2 * WIDTH:
+        return peaks
     inner = slice(WIDTH, len(values) - WIDTH)
     peaks[inner] = values[inner] >= np.lib.stride_tricks.sliding_window_view(values, 2 * WIDTH + 1).max(axis=1)
     return peaks

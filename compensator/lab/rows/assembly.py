@@ -68,13 +68,31 @@ def make_dataset(recordings: Sequence[Recording], facts: Facts, processing: Proc
     settled = replace(plain, trials=_on_one_flank(trials, cutoff), cache={}, unfiltered={})
     enough = max(FEWEST_ROWS, FLANK_SHARE * int(plain.counted.sum()))
     dataset = settled if int(settled.counted.sum()) >= enough else replace(plain, crosses_free_play=True)
-    found = int(dataset.counted.sum())
-    if found < FEWEST_ROWS:
-        raise UnusableDataError(
-            f"{found} rows where the joint moves faster than {slow:.3g} {facts.position_unit}/s; at least "
-            f"{FEWEST_ROWS} are needed: {WANTED_MOTION}"
-        )
+    if int(dataset.counted.sum()) < FEWEST_ROWS:
+        raise UnusableDataError(_too_few(dataset, int((speed > slow).sum()), len(speed)))
     return dataset
+
+
+def _too_few(dataset: Dataset, moving: int, samples: int) -> str:
+    """Why a dataset has too few rows that count, and what would give more.
+
+    Args:
+        dataset: with them.
+        moving: samples that are faster than what is too slow to tell a direction.
+        samples: that can be used.
+    """
+    rows, near = len(dataset.regime), int((dataset.regime == Regime.TRANSIENT).sum())
+    if moving < FEWEST_ROWS:
+        remedy = WANTED_MOTION
+    elif near >= FEWEST_ROWS:
+        remedy = "record longer strokes at a steady speed, or count the rows near reversals, too (rows = moving)"
+    else:
+        remedy = "record for longer"
+    return (
+        f"{int(dataset.counted.sum())} rows count, and at least {FEWEST_ROWS} are needed: the joint moves faster than "
+        f"{dataset.scales.slow:.3g} {dataset.facts.position_unit}/s in {moving} of {samples} usable samples, which are "
+        f"{rows} rows at the cut-off of {dataset.cutoff_hz:.3g} Hz, {near} of them near a start or reversal; {remedy}"
+    )
 
 
 def _supply_is_nominal(recordings: Sequence[Recording], facts: Facts) -> bool | None:

@@ -169,6 +169,8 @@ def _places(dataset: Dataset, rows: BoolArray, residual: FloatArray) -> tuple[li
     found, longest, start = [], 1, 0
     for trial, there in zip(dataset.trials, dataset.trial_rows, strict=True):
         times_s = dataset.time_of(trial)
+        if not len(times_s):
+            continue
         period_s = float(np.median(np.diff(times_s))) if len(times_s) > 1 else 1.0
         longest = max(longest, round(BLOCK_S / period_s))
         grid = np.round((times_s[rows[there]] - times_s[0]) / period_s).astype(np.int64)

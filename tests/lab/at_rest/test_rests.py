@@ -56,6 +56,17 @@ def test_what_a_poor_model_says_of_rest_is_not_called_chance():
     assert said(0.0, 0.0) == "At rest: of 40 stretches of 0.1 s, all lie within what friction holds."
 
 
+def test_a_joint_with_a_torque_sensor_is_judged_at_rest():
+    made = ramp_recordings()
+    for one in made:
+        one.channels["load_torque_n_m"] = 0.01 * np.sin(one.channels["position_rad"])
+        one.channels["torque_n_m"] += one.channels["load_torque_n_m"]
+    fit = fit_model(make_dataset(made, HORIZONTAL, Processing(cutoff_hz=12.0)), (*MODEL, "measured_load"))
+    found = compare_at_rest(fit)
+    assert found.by_starts
+    assert not found.is_evidence
+
+
 @pytest.mark.parametrize("bias", [0.03, -0.03])
 def test_a_bias_at_rest_that_sliding_does_not_have_is_found_on_its_side(bias):
     fit = biased(bias)

@@ -71,8 +71,11 @@ def jitter_of_the_encoder(old: np.ndarray) -> np.ndarray:
             lambda: changed(put("position_rad", 0.3)),
             "the joint does not move in any trial, under .*; record trials with",
         ),
-        (lambda: changed(put("position_rad", jitter_of_the_encoder)), "0 rows where the joint moves faster than 0.000"),
-        (steps_only, "0 rows where the joint moves faster than"),
+        (
+            lambda: changed(put("position_rad", jitter_of_the_encoder)),
+            "0 rows count, and at least 40 are needed: the joint moves faster than 0.000",
+        ),
+        (steps_only, "0 rows count, and at least 40 are needed: the joint moves faster than"),
         (lambda: changed(put("torque_n_m", 0.3)), "torque_n_m is 0.3 N m all the time; check the channel's mapping"),
         (lambda: changed(put("torque_n_m", 0.0)), "torque_n_m is 0 N m all the time"),
         (lambda: changed(put("torque_n_m", np.nan)), "'load-0g-0-1' has no effort channel"),
@@ -147,6 +150,19 @@ def test_a_complete_model_of_poor_data_lacks_nothing(made: Made) -> None:
     found = diagnosed(made())
     assert found.verdict == "nothing", found.sentence
     assert found.data_problems == []
+
+
+def test_a_trial_without_any_row_that_can_be_used_is_told_and_left_out():
+    found = diagnosed(changed(put("duty", 1.0), slice(2, 3)))
+    assert found.verdict == "nothing", found.sentence
+    assert any("record motion, with the duty below its limit" in problem for problem in found.data_problems)
+
+
+def test_a_study_with_next_to_no_steady_sliding_is_refused_with_what_to_record():
+    made = recordings(trials=plans((0.2,)), bench=Bench(duration_s=1.5), seed=3)
+    fit = fit_model(make_dataset(made, FACTS, Processing(rows="all")), ("inertia", "gravity", "coulomb", "viscous"))
+    with pytest.raises(UnusableDataError, match="rows are of steady sliding, and a diagnosis needs 40: record longer"):
+        diagnose(fit)
 
 
 @pytest.mark.parametrize("scale", [1.0, 1e3, 1e-6])

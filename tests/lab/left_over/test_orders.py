@@ -9,6 +9,7 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.left_over import orders
 from compensator.lab.left_over.error_budget import PLAIN
 from compensator.lab.left_over.left_over import left_over
+from compensator.lab.left_over.lines import is_peak
 from compensator.lab.left_over.orders import FORCE, FRICTION, GROWING, Line, foretold_by_others, independent_of, line_of
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.gathering import gather
@@ -35,6 +36,10 @@ def test_the_best_of_a_thousand_orders_is_no_small_chance(seed, monkeypatch):
     found = line(fitted(seed=seed), 1.0)
     assert found is not None
     assert found.chance > 0.01
+
+
+def test_among_few_orders_none_is_a_peak():
+    assert not is_peak(np.array([1.0, 3.0, 1.0])).any()
 
 
 def test_a_ripple_smaller_than_a_sensor_is_linear_is_no_line(monkeypatch):
