@@ -89,6 +89,11 @@ def mapping_entry(number: int, transmit: bool, subindex: int) -> DriveObject:
     return DriveObject(index, subindex, kind, f"mapping of {'TPDO' if transmit else 'RPDO'}{number}")
 
 
+def is_mapping(item: DriveObject) -> bool:
+    """Whether an object is of a PDO's mapping record."""
+    return 0x1600 <= item.index < 0x1800 or 0x1A00 <= item.index < 0x1C00
+
+
 def same(item: DriveObject, found: int, wanted: int) -> bool:
     """Whether what reads back is what was written. Bit 30 of a COB-ID is the device's own business."""
     if item.subindex == 1 and (0x1400 <= item.index < 0x1600 or 0x1800 <= item.index < 0x1A00):

@@ -6,7 +6,7 @@ from typing import Final
 
 from drivers.canopen.cia301.object_access import ObjectAccess, ObjectRefusedError
 from drivers.canopen.cia301.objects import DataType, DriveObject
-from drivers.canopen.cia301.pdo import INVALID, Pdo, cob_id_entry, communication, mapping_entry, same
+from drivers.canopen.cia301.pdo import INVALID, Pdo, Write, cob_id_entry, communication, is_mapping, mapping_entry, same
 from drivers.errors import DriveConfigurationError
 
 MOST_PDOS: Final = 8  # of each kind that CiA 402 has a default for
@@ -47,15 +47,25 @@ def configure(access: ObjectAccess, device: str, pdo: Pdo, slot: Slot) -> None:
     wanted = pdo.expected()
     if all(same(item, access.read(item), value) for item, value in wanted):
         return
-    mapped = slot.mapped == tuple(entry.mapping for entry in pdo.layout.entries)
-    cob_id, enabled = wanted[0]
-    is_enabled = same(cob_id, slot.cob_id, enabled)
+    _write(access, pdo, is_enabled=same(wanted[0].object, slot.cob_id, wanted[0].value))
+    _check(access, device, wanted)
+
+
+def _write(access: ObjectAccess, pdo: Pdo, is_enabled: bool) -> None:
+    """Write what differs now: a trial before may have emptied a mapping, or changed it."""
+    cob_id = cob_id_entry(pdo.number, pdo.transmit)
+    mapped = all(access.read_if_present(item) == value for item, value in pdo.expected() if is_mapping(item))
     for item, value in pdo.writes(with_mapping=not mapped):
+        if is_mapping(item) and access.read_if_present(item) == value:
+            continue  # one that cannot be written may be right already
         try:
             access.write(item, value)
         except ObjectRefusedError:
             if item != cob_id or not is_enabled:  # one that cannot be switched off may be mapped all the same
                 raise
+
+
+def _check(access: ObjectAccess, device: str, wanted: Sequence[Write]) -> None:
     for item, value in wanted:
         found = access.read(item)
         if not same(item, found, value):

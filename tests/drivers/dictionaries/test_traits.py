@@ -1,5 +1,7 @@
 """Each trait that real drives have, alone: the drive runs, or is refused for want of a watchdog."""
 
+from dataclasses import replace
+
 import pytest
 
 from drivers.canopen.cia301.object_access import ObjectAccess
@@ -84,6 +86,15 @@ def test_a_drive_that_holds_back_its_current_says_so_before_anything_moves(tmp_p
         with host(running, rated_current_a=RATED_A, current_limit_a=0.5) as drive:
             drive.open(PERIOD_S)
             assert not [note for note in drive.describe().notes if "limits the motor current" in note]
+
+
+@pytest.mark.parametrize("access", [Access.RW, Access.RO])
+def test_a_mapping_that_was_found_is_used_after_others_were_refused(access, tmp_path) -> None:
+    picky = TRAITS["one-pdo-of-its-own-choice"]
+    sheet = replace(picky, access={(0x1A00, place): access for place in (1, 2)}).write(tmp_path, "picky")
+    with device(sheet) as running, host(running) as drive:
+        drive.open(PERIOD_S)
+        assert [running.device.dictionary.number(0x1A00, place) for place in range(3)] == [2, 0x60410010, 0x60640020]
 
 
 @pytest.mark.parametrize("name", ["plain", "life-guarding", "rpdo-timer", "no-reaction-object"])

@@ -102,6 +102,8 @@ _FIFTH = (
         ),
     ),
 )
+# one TPDO of two places, each with objects of its own that it takes
+_PICKY = {(0x1A00, 1): 0x60410010, (0x1A00, 2): 0x60640020}
 _NO_TORQUE_IN_FOUR = _STATIC | {(0x1601, 0): 1}
 _COB_IDS = {(base + n, 1): first + 0x100 * n for base, first in ((0x1400, 0x200), (0x1800, 0x180)) for n in range(4)}
 _NO_GUARD: dict[str, Any] = {"without": (0x1016, 0x100C, 0x100D), "without_places": RPDO_TIMERS}
@@ -132,6 +134,13 @@ TRAITS: dict[str, Trait] = {
     ),
     "pdos-that-stay-on": Trait(access=dict.fromkeys(_COB_IDS, Access.RO), default=_COB_IDS),
     "one-pdo-to-send": Trait(without=(0x1801, 0x1802, 0x1803, 0x1A01, 0x1A02, 0x1A03), without_places=_beyond(3)),
+    "one-pdo-of-its-own-choice": Trait(
+        without=(*range(0x1801, 0x1804), *range(0x1A01, 0x1A04), 0x606C),
+        without_places=_beyond(2),
+        default={(0x1A00, 0): 2} | _PICKY,
+        high=_PICKY,
+        low={(0x1A00, 2): 0x60640020},
+    ),
     "heartbeat-limited-as-a-time": Trait(
         high={(0x1016, 1): 0xFFFF, (0x1016, 2): 0xFFFF}, without=(0x100C, 0x100D), without_places=RPDO_TIMERS
     ),
