@@ -8,6 +8,8 @@ from typing import NamedTuple
 from drivers.canopen.cia301.objects import DataType, DriveObject
 
 SYNCHRONOUS = 1  # transmission type: at every SYNC
+# with which an RPDO is taken: at the next SYNC (0 .. 240), or as it comes (254, 255); the others are reserved
+RECEIVED = frozenset((*range(241), 254, 255))
 INVALID = 0x8000_0000  # bit 31 of a PDO's COB-ID: it does not exist
 NO_RTR = 0x4000_0000  # bit 30 of a TPDO's COB-ID: it cannot be requested
 _LONGEST = 8  # bytes of a CAN frame
@@ -92,6 +94,11 @@ def mapping_entry(number: int, transmit: bool, subindex: int) -> DriveObject:
 def is_mapping(item: DriveObject) -> bool:
     """Whether an object is of a PDO's mapping record."""
     return 0x1600 <= item.index < 0x1800 or 0x1A00 <= item.index < 0x1C00
+
+
+def is_type_of_rpdo(item: DriveObject) -> bool:
+    """Whether an object is the transmission type of an RPDO."""
+    return 0x1400 <= item.index < 0x1600 and item.subindex == 2
 
 
 def same(item: DriveObject, found: int, wanted: int) -> bool:

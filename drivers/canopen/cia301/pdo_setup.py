@@ -6,7 +6,18 @@ from typing import Final
 
 from drivers.canopen.cia301.object_access import ObjectAccess, ObjectRefusedError
 from drivers.canopen.cia301.objects import DataType, DriveObject
-from drivers.canopen.cia301.pdo import INVALID, Pdo, Write, cob_id_entry, communication, is_mapping, mapping_entry, same
+from drivers.canopen.cia301.pdo import (
+    INVALID,
+    RECEIVED,
+    Pdo,
+    Write,
+    cob_id_entry,
+    communication,
+    is_mapping,
+    is_type_of_rpdo,
+    mapping_entry,
+    same,
+)
 from drivers.errors import DriveConfigurationError
 
 MOST_PDOS: Final = 8  # of each kind that CiA 402 has a default for
@@ -61,14 +72,15 @@ def _write(access: ObjectAccess, pdo: Pdo, is_enabled: bool) -> None:
         try:
             access.write(item, value)
         except ObjectRefusedError:
-            if item != cob_id or not is_enabled:  # one that cannot be switched off may be mapped all the same
+            # one that cannot be switched off may be mapped all the same; what reads back tells whether a type will do
+            if not (item == cob_id and is_enabled) and not is_type_of_rpdo(item):
                 raise
 
 
 def _check(access: ObjectAccess, device: str, wanted: Sequence[Write]) -> None:
     for item, value in wanted:
         found = access.read(item)
-        if not same(item, found, value):
+        if not same(item, found, value) and not (is_type_of_rpdo(item) and found in RECEIVED):
             raise DriveConfigurationError(
                 device, f"{item} reads back as 0x{found:X}; 0x{value:X} is wanted. Is the mapping locked in the drive?"
             )

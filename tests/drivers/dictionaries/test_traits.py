@@ -7,7 +7,7 @@ import pytest
 from drivers.canopen.cia301.object_access import ObjectAccess
 from drivers.canopen.cia301.objects import POSITION
 from drivers.contract import Mode, Watchdog
-from drivers.errors import WatchdogError
+from drivers.errors import DriveConfigurationError, WatchdogError
 from sim_backend.devices.canopen.conduct import Conduct
 from sim_backend.devices.canopen.objects.entry import Access
 from tests.drivers.dictionaries.attempt import PERIOD_S, RATED_A, attempt, device, host
@@ -95,6 +95,27 @@ def test_a_mapping_that_was_found_is_used_after_others_were_refused(access, tmp_
     with device(sheet) as running, host(running) as drive:
         drive.open(PERIOD_S)
         assert [running.device.dictionary.number(0x1A00, place) for place in range(3)] == [2, 0x60410010, 0x60640020]
+
+
+HELD_TYPES = {(0x1400 + number, 2): Access.RO for number in range(4)}
+
+
+@pytest.mark.parametrize(
+    ("trait", "says"),
+    [
+        (
+            Trait(access=HELD_TYPES, default=dict.fromkeys(HELD_TYPES, 252)),
+            r"RPDO1 \(0x1400:02\) reads back as 0xFC; 0x1",
+        ),
+    ],
+)
+def test_a_drive_that_lacks_what_every_cycle_needs_is_told_so(trait, says, tmp_path) -> None:
+    with (
+        device(trait.write(tmp_path, "lacking")) as running,
+        host(running) as drive,
+        pytest.raises(DriveConfigurationError, match=says),
+    ):
+        drive.open(PERIOD_S)
 
 
 @pytest.mark.parametrize("name", ["plain", "life-guarding", "rpdo-timer", "no-reaction-object"])

@@ -141,6 +141,10 @@ TRAITS: dict[str, Trait] = {
         high=_PICKY,
         low={(0x1A00, 2): 0x60640020},
     ),
+    "demands-that-act-as-they-come": Trait(
+        access={(0x1400 + number, 2): Access.RO for number in range(4)},
+        default={(0x1400 + number, 2): 254 + number % 2 for number in range(4)},
+    ),
     "heartbeat-limited-as-a-time": Trait(
         high={(0x1016, 1): 0xFFFF, (0x1016, 2): 0xFFFF}, without=(0x100C, 0x100D), without_places=RPDO_TIMERS
     ),
