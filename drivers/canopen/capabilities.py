@@ -25,7 +25,7 @@ class Capabilities:
 
     Attributes:
         present: optional objects that it has.
-        current: the object that tells the motor current; None where there is none.
+        currents: the objects that tell the motor current, the best first; not each can be put into a PDO.
         modes: the code of 0x6060 for each mode.
         units: by the drive and by the configuration.
         told_counts: encoder counts of a motor turn, by the drive; NaN where it tells none.
@@ -36,13 +36,18 @@ class Capabilities:
     identity: Identity
     profile: ObjectProfile
     present: frozenset[DriveObject]
-    current: DriveObject | None
+    currents: tuple[DriveObject, ...]
     modes: dict[Mode, int]
     scale: DriveScale
     units: tuple[UnitRow, ...]
     told_counts: float
     no_homing: str
     untold: Untold | None
+
+    @property
+    def current(self) -> DriveObject | None:
+        """The object that tells the motor current when it is asked; None where there is none."""
+        return next(iter(self.currents), None)
 
 
 def probe(table: ObjectTable, settings: CanopenSettings, joint: JointScale, identity: Identity) -> Capabilities:
@@ -58,14 +63,14 @@ def probe(table: ObjectTable, settings: CanopenSettings, joint: JointScale, iden
     measured = (profile.current, profile.duty, profile.supply, profile.temperature, TORQUE, VELOCITY)
     asked = [*(item for item in measured if item is not None), TORQUE_OFFSET, VELOCITY_OFFSET]
     present = frozenset(item for item in asked if table.has(item, _MEASURED))
-    current = next((item for item in (profile.current, TORQUE) if item in present and scale.tells(item)), None)
+    currents = tuple(item for item in (profile.current, TORQUE) if item in present and scale.tells(item))
     rows = (*units.rows, UnitRow("motor current of 1000 permille torque in A", _told(table, profile), rated_a))
     choice = ModeChoice(table, settings, scale)
     modes = choice.choose()
-    tells = current is None and any(item in present for item in (profile.current, TORQUE))
+    tells = not currents and any(item in present for item in (profile.current, TORQUE))
     no_homing = why_not(table, scale, VELOCITY in present) if settings.homing else "no way of homing was configured"
     untold = _untold(tells, choice.lacks_rated_current)
-    return Capabilities(identity, profile, present, current, modes, scale, rows, units.told_counts, no_homing, untold)
+    return Capabilities(identity, profile, present, currents, modes, scale, rows, units.told_counts, no_homing, untold)
 
 
 def _untold(tells: bool, takes: bool) -> Untold | None:

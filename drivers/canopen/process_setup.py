@@ -24,6 +24,7 @@ from drivers.canopen.settings import CanopenSettings
 _SYNC = 0x80
 _SYNC_MATTERS = 0x4000_07FF  # of 0x1005: the COB-ID, and whether the drive produces SYNC
 _PURPOSE = "interpolation of positions"
+_LOST = "no room in a TPDO: not measured"
 
 
 def set_interpolation(table: ObjectTable, period_s: float) -> None:
@@ -49,19 +50,24 @@ def set_up_pdos(
     """
     _require_sync(table)
     duty = found.profile.duty if settings.duty_sign_from_current else None
-    state = [STATUSWORD, *(item for item in (found.current, duty) if item in found.present and item is not None)]
     motion = [POSITION, *(item for item in (VELOCITY,) if item in found.present)]
     # with every target: a drive adds the offset in other modes too, and keeps the last one it was given
     offsets = [TORQUE_OFFSET] if TORQUE_OFFSET in found.present else []
-    arrangement = Arrangement(access, settings.device, settings.node_id)
-    data = arrangement.arrange(_targets(table, found), offsets, [state, motion])
+    targets = _targets(table, found)
+    # a drive may tell its current when it is asked, and put into a PDO its torque alone
+    for current in found.currents or (None,):
+        state = [STATUSWORD, *(item for item in (current, duty) if item is not None and item in found.present)]
+        data = Arrangement(access, settings.device, settings.node_id).arrange(targets, offsets, [state, motion])
+        if current is None or current not in data.lost:
+            break
+        table.note(current, Need.WISHED, "process data", False, _LOST)
     for pdo in (*data.demands.values(), *data.tpdos):
         table.note(pdo, Need.REQUIRED, "process data", True, ", ".join(map(str, pdo.layout.entries)))
     for mode in [mode for mode, code in found.modes.items() if TARGETS[code] not in data.demands]:
         why = f"the drive maps {TARGETS[found.modes.pop(mode)]} with the controlword into no RPDO"
         table.note(f"mode '{mode.value}'", Need.WISHED, "mode", False, why)
     for item in data.lost:
-        table.note(item, Need.WISHED, "process data", False, "no room in a TPDO: not measured")
+        table.note(item, Need.WISHED, "process data", False, _LOST)
     return data
 
 

@@ -28,8 +28,9 @@ class Measurement:
         self._position_place = position
         self._velocity_place = place(VELOCITY)
         self._velocity_rad_s = nan if self._velocity_place is None else scale.velocity_rad_s
-        self._current_place = None if found.current is None else place(found.current)
-        self._current_a = nan if found.current is None else scale.joint.motor_sign * scale.current_a(found.current)
+        told = next((item for item in found.currents if place(item) is not None), None)
+        self._current_place = None if told is None else place(told)
+        self._current_a = nan if told is None else scale.joint.motor_sign * scale.current_a(told)
         self._duty_place = None if profile.duty is None else place(profile.duty)
         self._duty_scale = nan if profile.duty is None else profile.duty.scale
         self._supply = _polled(profile.supply, found)

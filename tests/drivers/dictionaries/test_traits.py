@@ -6,11 +6,11 @@ import pytest
 
 from drivers.canopen.cia301.object_access import ObjectAccess
 from drivers.canopen.cia301.objects import POSITION
-from drivers.contract import Mode, Watchdog
+from drivers.contract import Command, Mode, Watchdog
 from drivers.errors import DriveConfigurationError, WatchdogError
 from sim_backend.devices.canopen.conduct import Conduct
 from sim_backend.devices.canopen.objects.entry import Access
-from tests.drivers.dictionaries.attempt import PERIOD_S, RATED_A, attempt, device, host
+from tests.drivers.dictionaries.attempt import PERIOD_S, RATED_A, attempt, cycles, device, host
 from tests.drivers.dictionaries.traits import TRAITS, Trait
 
 pytestmark = pytest.mark.virtual_time
@@ -86,6 +86,15 @@ def test_a_drive_that_holds_back_its_current_says_so_before_anything_moves(tmp_p
         with host(running, rated_current_a=RATED_A, current_limit_a=0.5) as drive:
             drive.open(PERIOD_S)
             assert not [note for note in drive.describe().notes if "limits the motor current" in note]
+
+
+def test_a_current_that_fits_no_pdo_is_measured_as_torque(tmp_path) -> None:
+    with device(TRAITS["current-in-no-pdo"].write(tmp_path, "torque")) as running, host(running) as drive:
+        drive.open(PERIOD_S)
+        drive.enable(Mode.CURRENT)
+        sample = cycles(drive, Command(Mode.CURRENT, 0.3), 0.2)
+        assert sample.current_a == pytest.approx(0.3, rel=0.1)
+        assert any("current actual value" in row.object and not row.found for row in drive.objects)
 
 
 @pytest.mark.parametrize("access", [Access.RW, Access.RO])

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from sim_backend.devices.canopen.data_types import U8, U32
-from sim_backend.devices.canopen.objects.entry import Access, Entry, Object, record
+from sim_backend.devices.canopen.data_types import I16, U8, U32
+from sim_backend.devices.canopen.objects.entry import Access, Entry, Object, record, variable
 from sim_backend.devices.canopen.objects.family import Rating
 from sim_backend.devices.canopen.objects.generic import GENERIC
 from sim_backend.devices.canopen.serve import eds_text
@@ -145,6 +145,7 @@ TRAITS: dict[str, Trait] = {
         access={(0x1400 + number, 2): Access.RO for number in range(4)},
         default={(0x1400 + number, 2): 254 + number % 2 for number in range(4)},
     ),
+    "current-in-no-pdo": Trait(without=(0x6078,), added=(variable(0x6078, "Current actual value", I16, Access.RO),)),
     "heartbeat-limited-as-a-time": Trait(
         high={(0x1016, 1): 0xFFFF, (0x1016, 2): 0xFFFF}, without=(0x100C, 0x100D), without_places=RPDO_TIMERS
     ),
