@@ -1,6 +1,6 @@
 """The limits that the drive itself keeps: motor current (0x6073, 0x6072 or the vendor's own), position (0x607D)."""
 
-from math import ceil, floor
+from math import ceil, floor, isnan
 
 from drivers.canopen.capabilities import Capabilities
 from drivers.canopen.cia301.object_table import Need, ObjectTable
@@ -26,8 +26,11 @@ def set_limits(table: ObjectTable, settings: CanopenSettings, found: Capabilitie
 
 def _own_current(table: ObjectTable, found: Capabilities) -> str:
     """The lowest limit of current that somebody has set in the drive, in words; "" where it tells none."""
-    told = {item: table.ask(item, _PURPOSE) for item in _limiting(found) if found.scale.tells(item)}
+    told = {item: table.ask(item, _PURPOSE) for item in _limiting(found)}
+    if none := " and ".join(str(item) for item, value in told.items() if value == 0):
+        return f"The drive may not move the motor, for its {none} is 0; set current_limit_a [A] in [drive]."
     limits_a = {item: value * found.scale.current_a(item) for item, value in told.items() if value}
+    limits_a = {item: limit_a for item, limit_a in limits_a.items() if not isnan(limit_a)}
     if not limits_a:
         return ""
     lowest = min(limits_a, key=limits_a.__getitem__)

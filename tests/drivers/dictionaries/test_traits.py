@@ -88,6 +88,18 @@ def test_a_drive_that_holds_back_its_current_says_so_before_anything_moves(tmp_p
             assert not [note for note in drive.describe().notes if "limits the motor current" in note]
 
 
+def test_a_drive_that_limits_its_current_to_nothing_says_what_to_set(tmp_path) -> None:
+    with device(TRAITS["plain"].write(tmp_path, "no-limit")) as running:
+        running.device.dictionary.put(0x6073, 0, 0)  # nobody has commissioned it
+        with host(running) as drive:
+            drive.open(PERIOD_S)
+            says = "The drive may not move the motor, for its max current (0x6073:00) is 0; set current_limit_a [A]"
+            assert [note for note in drive.describe().notes if note.startswith(says)]
+        with host(running, current_limit_a=0.5) as drive:
+            drive.open(PERIOD_S)
+            assert not [note for note in drive.describe().notes if "may not move" in note]
+
+
 def test_a_current_that_fits_no_pdo_is_measured_as_torque(tmp_path) -> None:
     with device(TRAITS["current-in-no-pdo"].write(tmp_path, "torque")) as running, host(running) as drive:
         drive.open(PERIOD_S)
