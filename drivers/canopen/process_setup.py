@@ -20,6 +20,7 @@ from drivers.canopen.cia402.modes import TARGETS
 from drivers.canopen.cia402.process_data import Arrangement, ProcessData
 from drivers.canopen.cia402.units import interpolation_periods
 from drivers.canopen.settings import CanopenSettings
+from drivers.errors import DriveConfigurationError
 
 _SYNC = 0x80
 _SYNC_MATTERS = 0x4000_07FF  # of 0x1005: the COB-ID, and whether the drive produces SYNC
@@ -49,6 +50,7 @@ def set_up_pdos(
         DriveConfigurationError: SYNC is elsewhere, or a PDO that is required has no room.
     """
     _require_sync(table)
+    _require_position(table, settings)
     duty = found.profile.duty if settings.duty_sign_from_current else None
     motion = [POSITION, *(item for item in (VELOCITY,) if item in found.present)]
     # with every target: a drive adds the offset in other modes too, and keeps the last one it was given
@@ -69,6 +71,15 @@ def set_up_pdos(
     for item in data.lost:
         table.note(item, Need.WISHED, "process data", False, _LOST)
     return data
+
+
+def _require_position(table: ObjectTable, settings: CanopenSettings) -> None:
+    if table.ask(POSITION, "process data", Need.REQUIRED) is None:
+        raise DriveConfigurationError(
+            settings.device,
+            f"has no {POSITION} that can be read ({table.outcome(POSITION, 'process data')}): nobody would know where "
+            "the joint is; look in the drive's own tool for a firmware that has it",
+        )
 
 
 def _require_sync(table: ObjectTable) -> None:

@@ -31,8 +31,10 @@ class ModeSwitch:
     def select(self) -> bool:
         """Ask for the mode; tell whether the drive shows it already.
 
+        What 0x6060 reads back is no sign of it: that is the mode that was asked for (CiA 402-2).
+
         Raises:
-            DriveConfigurationError: it refuses.
+            DriveConfigurationError: it refuses, or cannot show any.
         """
         access = self._session.access
         try:
@@ -40,11 +42,21 @@ class ModeSwitch:
         except ObjectRefusedError as refusal:
             raise self._refused(str(refusal)) from refusal
         deadline_s = perf_counter() + min(_LOOK_S, self._session.settings.mode_s)
-        while access.read_if_present(MODE_DISPLAY) != self._code:
+        while self._shown() != self._code:
             if perf_counter() > deadline_s:
                 return False
             time.sleep(_PAUSE_S)
         return True
+
+    def _shown(self) -> int:
+        try:
+            return self._session.access.read(MODE_DISPLAY)
+        except ObjectRefusedError as refusal:
+            raise DriveConfigurationError(
+                self._session.settings.device,
+                f"has no {MODE_DISPLAY} that can be read ({refusal.why}): nobody would know in which mode it moves. "
+                f"{MODE} tells only which one was asked for; look in the drive's own tool for a firmware with both",
+            ) from refusal
 
     def rest_every_target(self) -> None:
         """Have nothing demanded in any mode: it is not known yet which one the drive will be in."""

@@ -128,6 +128,7 @@ HELD_TYPES = {(0x1400 + number, 2): Access.RO for number in range(4)}
             Trait(access=HELD_TYPES, default=dict.fromkeys(HELD_TYPES, 252)),
             r"RPDO1 \(0x1400:02\) reads back as 0xFC; 0x1",
         ),
+        (Trait(without=(0x6064,)), r"has no position actual value \(0x6064:00\) .*Object does not exist"),
     ],
 )
 def test_a_drive_that_lacks_what_every_cycle_needs_is_told_so(trait, says, tmp_path) -> None:
@@ -137,6 +138,15 @@ def test_a_drive_that_lacks_what_every_cycle_needs_is_told_so(trait, says, tmp_p
         pytest.raises(DriveConfigurationError, match=says),
     ):
         drive.open(PERIOD_S)
+
+
+def test_a_drive_that_cannot_show_its_mode_gets_no_power(tmp_path) -> None:
+    says = r"has no modes of operation display \(0x6061:00\) .*modes of operation \(0x6060:00\) tells only which one"
+    with device(Trait(without=(0x6061,)).write(tmp_path, "hidden-mode")) as running, host(running) as drive:
+        drive.open(PERIOD_S)
+        with pytest.raises(DriveConfigurationError, match=says):
+            drive.enable(Mode.CURRENT)
+        assert running.device.axis.power.since_s == 0.0
 
 
 @pytest.mark.parametrize("name", ["plain", "life-guarding", "rpdo-timer", "no-reaction-object"])
