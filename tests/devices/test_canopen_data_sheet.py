@@ -51,6 +51,18 @@ NrOfEntries=1
 ParameterName=Negative
 DataType=0x0003
 DefaultValue=0xFFFE
+[2005]
+ParameterName=Real by its bits
+DataType=0x0008
+DefaultValue=0x437A0000
+[2006]
+ParameterName=Long real by its bits
+DataType=0x0011
+DefaultValue=0x406F400000000000
+[2007]
+ParameterName=Real of too many bits
+DataType=0x0008
+DefaultValue=0x406F400000000000
 """
 
 
@@ -64,7 +76,7 @@ def write(tmp_path):
     return written
 
 
-@pytest.mark.parametrize("encoding", ["latin-1", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
 def test_a_file_is_read_in_the_encoding_that_it_names(write, encoding) -> None:
     sheet = read_data_sheet(write(HEAD, encoding))
     assert sheet.name == "Drive 10 \u00b5m"
@@ -80,6 +92,33 @@ def test_values_are_those_of_their_type(write) -> None:
     assert (cob_id.default, cob_id.with_node_id) == (0x40000200, True)
     assert [sheet.default(0x2003, place) for place in range(3)] == [2, 7, 0xFF]
     assert sheet.default(0x2004) == -2
+    assert sheet.default(0x2005) == int.from_bytes(pack("<f", 250.0), "little")
+    assert sheet.default(0x2006) == int.from_bytes(pack("<d", 250.0), "little")
+    assert sheet.default(0x2007) is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        HEAD.replace("\n", "\r"),
+        HEAD + "\x1a",
+        HEAD + "\0\0",
+        "// made by hand\n" + HEAD.replace("=0x0007", "=0x0007 // U32"),
+        "Drive, all versions\n\n" + HEAD,
+        HEAD.replace("DataType", "  DataType").replace("[1000]", "\t[1000]"),
+        HEAD.replace("0x00020192", "20192h"),
+    ],
+)
+def test_what_only_looks_different_is_read_alike(write, text) -> None:
+    sheet = read_data_sheet(write(text, "latin-1"))
+    plain = read_data_sheet(write(HEAD))
+    assert (sheet.objects, sheet.told) == (plain.objects, plain.told)
+
+
+@pytest.mark.parametrize("name", ["[1A00Sub01]", "[1a00sub 1]", "[1A00sub0x1]"])
+def test_a_subindex_is_found_however_it_is_written(write, name) -> None:
+    text = f"[1A00]\nSubNumber=2\n{name}\nDataType=0x0007\nDefaultValue=0x60640020\n"
+    assert read_data_sheet(write(text)).default(0x1A00, 1) == 0x60640020
 
 
 def test_a_value_that_is_no_number_is_not_told(write) -> None:
@@ -95,6 +134,11 @@ def test_a_value_that_is_no_number_is_not_told(write) -> None:
         ("A drive\n", "File contains no section headers"),
         (HEAD.replace("[1000]", "[1000]\nObjectType=VAR"), r"\[1000\] ObjectType is 'VAR'; a number is wanted"),
         ("[DeviceInfo]\n", "describes no objects"),
+        (HEAD.replace("DataType=", "Type="), r"\[1000\] DataType is ''; a number is wanted"),
+        ("Name=A\n" + HEAD, "File contains no section headers. file: 'drive.eds', line: 1 'Name=A"),
+        (HEAD + "  and so on\n", r"Source contains parsing errors: 'drive.eds' \[line 11\]: 'and so on"),
+        (HEAD.replace("=ro", "=r\0o"), "line 9 has byte 0x00; text is wanted"),
+        ("[1018sub1]\nDataType=7\n[1018SUB01]\nDataType=5\n", r"\[1018sub1\] and \[1018SUB01\] are one object"),
     ],
 )
 def test_what_is_no_data_sheet_is_refused_with_the_place(write, text, words) -> None:

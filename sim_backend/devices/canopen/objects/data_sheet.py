@@ -12,8 +12,10 @@ from sim_backend.devices.canopen.objects.entry import Access, Entry, Object
 from sim_backend.errors import ParameterError
 
 _OBJECT = re.compile("[0-9a-f]{4}")
+_SUBINDEX = re.compile(r"([0-9a-f]{4})\s*sub\s*(?:0x)?0*([0-9a-f]+)")
 _NODE_ID = "$NODEID"
-_VARIABLES = (0x2, 0x7)  # object types that are one value: domain, variable
+_DOMAIN = 0x2
+_VARIABLES = (_DOMAIN, 0x7)  # object types that are one value: domain, variable
 _REALS = {0x08: "<f", 0x11: "<d"}
 _ENCODINGS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 
@@ -48,10 +50,10 @@ def read_data_sheet(path: Path) -> DataSheet:
     Raises:
         ParameterError: it cannot be read, or is no data sheet.
     """
-    parser = ConfigParser(interpolation=None, strict=False, inline_comment_prefixes=(";",))
+    parser = ConfigParser(interpolation=None, strict=False, inline_comment_prefixes=(";", "//"))
     try:
-        parser.read_string(_text(path))
-        sections = {name.lower(): parser[name] for name in parser.sections()}
+        parser.read_string(_plain(_text(path)), path.name)
+        sections = _sections(parser)
         objects = [made for index in _described(sections) if (made := _object(index, sections)) is not None]
     except (OSError, ValueError, Error) as error:
         raise ParameterError(f"data sheet {path}: {' '.join(str(error).split())}") from error
@@ -66,11 +68,48 @@ def read_data_sheet(path: Path) -> DataSheet:
 def _text(path: Path) -> str:
     """Return the text of a file; one without a mark of its encoding is read byte by byte: only names may suffer."""
     data = path.read_bytes()
-    encoding = next((name for mark, name in _ENCODINGS.items() if data.startswith(mark)), "latin-1")
+    encoding = next((name for mark, name in _ENCODINGS.items() if data.startswith(mark)), _unmarked(data))
     text = data.decode(encoding)
     if text.lstrip().startswith("<"):
         raise ValueError("is XML (XDD, XDC, ESI); an EDS or DCF file is wanted: save it as one in the maker's tool")
     return text
+
+
+def _unmarked(data: bytes) -> str:
+    """Return an encoding by where the zero bytes are: of text in UTF-16 nearly every other byte is one."""
+    most = 0.9 * (len(data) // 2)
+    places = {"utf-16-be": data[0::2], "utf-16-le": data[1::2]}
+    return next((name for name, half in places.items() if half.count(0) > most), "latin-1")
+
+
+def _plain(text: str) -> str:
+    """Return a text line by line for its reader: lines that end alike, no indents, no title, no mark of the end.
+
+    Raises:
+        ValueError: a byte is in it that no text has.
+    """
+    lines = [line.strip() for line in re.split("\r\n?|\n", text.rstrip("\0\x1a \t\r\n"))]
+    for number, line in enumerate(lines, 1):
+        if found := re.search("[\0\x1a]", line):
+            raise ValueError(f"line {number} has byte 0x{ord(found[0]):02X}; text is wanted: save it anew")
+    first = next((place for place, line in enumerate(lines) if line.startswith("[")), 0)
+    # a line with a value is no title: its section is missing
+    return "\n".join([*("" if "=" not in line else line for line in lines[:first]), *lines[first:]])
+
+
+def _sections(parser: ConfigParser) -> dict[str, SectionProxy]:
+    """Return sections by their name in lower case, the subindex without leading zeros.
+
+    Raises:
+        ValueError: one is there twice under two spellings, and says different things.
+    """
+    sections: dict[str, SectionProxy] = {}
+    for name in parser.sections():
+        section = parser[name]
+        before = sections.setdefault(_SUBINDEX.sub(r"\1sub\2", name.strip().lower()), section)
+        if before is not section and dict(before) != dict(section):
+            raise ValueError(f"[{before.name}] and [{name}] are one object, and differ; leave one of them")
+    return sections
 
 
 Made = tuple[Object, list[Entry]]
@@ -98,8 +137,8 @@ def _object(index: int, sections: dict[str, SectionProxy]) -> Made | None:
     elif _field(section, "CompactSubObj"):
         found = _compact(section, sections.get(f"{index:04x}value"))
     else:
-        places = (place for place in range(255) if f"{index:04x}sub{place:x}" in sections)
-        found = [_entry(place, sections[f"{index:04x}sub{place:x}"]) for place in places]
+        names = {place: f"{index:04x}sub{place:x}" for place in range(255)}
+        found = [_entry(place, sections[name]) for place, name in names.items() if name in sections]
     if not found:
         return None
     return Object(index, name, tuple(entry for entry, _ in found)), [entry for entry, told in found if told]
@@ -117,7 +156,8 @@ def _compact(section: SectionProxy, values: SectionProxy | None) -> list[tuple[E
 
 def _entry(place: int, section: SectionProxy, value: str | None = None) -> tuple[Entry, bool]:
     """Return an entry, and whether the file gives it a value: of a configured device its own, else the default."""
-    kind = TYPES.get(_field(section, "DataType", "0x5"), U8)
+    untyped = "0xF" if _field(section, "ObjectType", "0x7") == _DOMAIN else ""  # any other has to name its type
+    kind = TYPES.get(_field(section, "DataType", untyped), U8)
     text = value or (section.get("ParameterValue") or section.get("DefaultValue") or "").strip()
     told = _value(text, kind)
     whole = None if kind.length is None or kind.code in _REALS else kind.range
@@ -142,10 +182,20 @@ def _value(text: str, kind: DataType) -> int | str | None:
         return text or None
     try:
         if kind.code in _REALS:
-            return int.from_bytes(pack(_REALS[kind.code], float(text)), "little")
+            return _real(text, kind)
         return _signed(_number(text.upper().replace(_NODE_ID, "").strip(" +") or "0"), kind.range)
     except (ValueError, OverflowError):
         return None
+
+
+def _real(text: str, kind: DataType) -> int:
+    """Return the bits of a real number; a hexadecimal one is written as its bits."""
+    if not text.lower().startswith("0x"):
+        return int.from_bytes(pack(_REALS[kind.code], float(text)), "little")
+    bits = _number(text)
+    if bits > kind.range[1]:
+        raise ValueError
+    return bits
 
 
 def _access(text: str) -> Access:
@@ -180,7 +230,7 @@ def _field(section: SectionProxy, key: str, absent: str = "0") -> int:
 
 
 def _number(text: str) -> int:
-    """Return a number: 0x before a hexadecimal, 0 before an octal, else decimal.
+    """Return a number: 0x before a hexadecimal or h after it, 0 before an octal, else decimal.
 
     Raises:
         ValueError: it is none.
@@ -188,7 +238,7 @@ def _number(text: str) -> int:
     text = text.strip()
     if len(text) > 1 and text[0] == "0" and text.isdigit():
         return int(text, 8) if set(text) <= set("01234567") else int(text)
-    return int(text, 0)
+    return int(text[:-1], 16) if text[-1:] in ("h", "H") else int(text, 0)
 
 
 def _signed(value: int, whole: tuple[int, int]) -> int:
