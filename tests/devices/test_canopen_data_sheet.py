@@ -5,6 +5,7 @@ from struct import pack
 import pytest
 
 from sim_backend.devices.canopen.objects.data_sheet import read_data_sheet
+from sim_backend.devices.canopen.objects.from_sheet import family_of
 from sim_backend.devices.canopen.serve import data_sheet
 from sim_backend.errors import ParameterError
 
@@ -64,6 +65,24 @@ ParameterName=Real of too many bits
 DataType=0x0008
 DefaultValue=0x406F400000000000
 """
+IDENTITY = """[DeviceInfo]
+VendorNumber=0x000000FB
+ProductNumber=0x63220000
+RevisionNumber=rev. 3
+[1018]
+SubNumber=4
+[1018sub0]
+DataType=0x0005
+DefaultValue=3
+[1018sub1]
+DataType=0x0007
+[1018sub2]
+DataType=0x0007
+DefaultValue=7
+[1018sub3]
+DataType=0x0007
+"""
+OF_EPOS4 = "".join(f"[{index}]\nSubNumber=1\n[{index}sub2]\nDataType=0x0007\n" for index in ("3001", "30D1"))
 
 
 @pytest.fixture
@@ -119,6 +138,16 @@ def test_what_only_looks_different_is_read_alike(write, text) -> None:
 def test_a_subindex_is_found_however_it_is_written(write, name) -> None:
     text = f"[1A00]\nSubNumber=2\n{name}\nDataType=0x0007\nDefaultValue=0x60640020\n"
     assert read_data_sheet(write(text)).default(0x1A00, 1) == 0x60640020
+
+
+def test_what_the_identity_leaves_out_is_told_by_the_device_info(write) -> None:
+    sheet = read_data_sheet(write(IDENTITY))
+    assert [sheet.default(0x1018, place) for place in range(4)] == [3, 0xFB, 7, None]
+
+
+@pytest.mark.parametrize(("more", "unit_n_m"), [("", 1e-3), (OF_EPOS4, 1e-6)])
+def test_a_drive_of_maxon_is_an_epos4_by_its_objects(write, more, unit_n_m) -> None:
+    assert family_of(read_data_sheet(write(IDENTITY + more))).torque_unit_n_m == unit_n_m
 
 
 def test_a_value_that_is_no_number_is_not_told(write) -> None:

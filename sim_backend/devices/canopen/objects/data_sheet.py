@@ -17,6 +17,7 @@ _NODE_ID = "$NODEID"
 _DOMAIN = 0x2
 _VARIABLES = (_DOMAIN, 0x7)  # object types that are one value: domain, variable
 _REALS = {0x08: "<f", 0x11: "<d"}
+_IDENTITY = {"1018sub1": "VendorNumber", "1018sub2": "ProductNumber", "1018sub3": "RevisionNumber"}  # of [DeviceInfo]
 _ENCODINGS = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 
 
@@ -138,7 +139,11 @@ def _object(index: int, sections: dict[str, SectionProxy]) -> Made | None:
         found = _compact(section, sections.get(f"{index:04x}value"))
     else:
         names = {place: f"{index:04x}sub{place:x}" for place in range(255)}
-        found = [_entry(place, sections[name]) for place, name in names.items() if name in sections]
+        found = [
+            _entry(place, sections[name], absent=_identity(name, sections))
+            for place, name in names.items()
+            if name in sections
+        ]
     if not found:
         return None
     return Object(index, name, tuple(entry for entry, _ in found)), [entry for entry, told in found if told]
@@ -154,11 +159,24 @@ def _compact(section: SectionProxy, values: SectionProxy | None) -> list[tuple[E
     return entries
 
 
-def _entry(place: int, section: SectionProxy, value: str | None = None) -> tuple[Entry, bool]:
-    """Return an entry, and whether the file gives it a value: of a configured device its own, else the default."""
+def _identity(name: str, sections: dict[str, SectionProxy]) -> str:
+    """Return what [DeviceInfo] says of an entry of 0x1018: many files tell it nowhere else; "" of any other."""
+    device = sections.get("deviceinfo")
+    return "" if device is None or name not in _IDENTITY else device.get(_IDENTITY[name], "")
+
+
+def _entry(place: int, section: SectionProxy, value: str | None = None, absent: str = "") -> tuple[Entry, bool]:
+    """Return an entry, and whether the file gives it a value: of a configured device its own, else the default.
+
+    Args:
+        place: its subindex.
+        section: of the file.
+        value: told elsewhere, before that of the section.
+        absent: told elsewhere, where the section has none.
+    """
     untyped = "0xF" if _field(section, "ObjectType", "0x7") == _DOMAIN else ""  # any other has to name its type
     kind = TYPES.get(_field(section, "DataType", untyped), U8)
-    text = value or (section.get("ParameterValue") or section.get("DefaultValue") or "").strip()
+    text = value or (section.get("ParameterValue") or section.get("DefaultValue") or absent).strip()
     told = _value(text, kind)
     whole = None if kind.length is None or kind.code in _REALS else kind.range
     limits = (None, None) if whole is None else _limits(section.get("LowLimit"), section.get("HighLimit"), whole)

@@ -13,6 +13,7 @@ from sim_backend.devices.canopen.objects.generic import GENERIC
 from sim_backend.devices.canopen.objects.homing import homing_objects
 
 _DEVICE_NAME, _CONSUMER_HEARTBEAT, _HOMING_METHOD = 0x1008, 0x1016, 0x6098
+_OF_EPOS4 = frozenset({(0x3001, 2), (0x30D1, 2)})  # where it keeps limit and current; maxon's drives before it do not
 _LINK_TO_MAPPING = 0x1400 ^ 0x1600  # from the communication parameter of a PDO to its mapping parameter, and back
 # what whoever commissions a drive enters for the motor on it; a data sheet cannot know it
 _OF_THE_MOTOR = frozenset({(0x6075, 0), (0x6076, 0), (0x608F, 1), (0x608F, 2), (0x3001, 1), (0x3001, 2), (0x3001, 5)})
@@ -27,9 +28,9 @@ _ACCELERATIONS_RAD_S2 = {(numerator, 0x57): angle_rad for numerator, angle_rad i
 
 def family_of(sheet: DataSheet) -> Family:
     """Return the drive that a data sheet describes, on whatever motor it is put."""
-    base = EPOS4 if sheet.default(0x1018, 1) == MAXON else GENERIC
     name = f"{sheet.name}, simulated"
     places = {(one.index, entry.subindex) for one in sheet.objects for entry in one.entries}
+    base = EPOS4 if sheet.default(0x1018, 1) == MAXON and places >= _OF_EPOS4 else GENERIC
     return Family(
         name=sheet.name,
         device_name=name,
