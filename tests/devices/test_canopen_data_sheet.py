@@ -5,8 +5,10 @@ from struct import pack
 import pytest
 
 from sim_backend.devices.canopen.objects.data_sheet import read_data_sheet
+from sim_backend.devices.canopen.objects.family import Rating, mode_bits
 from sim_backend.devices.canopen.objects.from_sheet import family_of
 from sim_backend.devices.canopen.serve import data_sheet
+from sim_backend.devices.joint_tables import behind_a_drive
 from sim_backend.errors import ParameterError
 
 HEAD = """[DeviceInfo]
@@ -81,6 +83,10 @@ DataType=0x0007
 DefaultValue=7
 [1018sub3]
 DataType=0x0007
+[6098]
+DataType=0x0002
+[6502]
+DataType=0x0007
 """
 OF_EPOS4 = "".join(f"[{index}]\nSubNumber=1\n[{index}sub2]\nDataType=0x0007\n" for index in ("3001", "30D1"))
 
@@ -148,6 +154,13 @@ def test_what_the_identity_leaves_out_is_told_by_the_device_info(write) -> None:
 @pytest.mark.parametrize(("more", "unit_n_m"), [("", 1e-3), (OF_EPOS4, 1e-6)])
 def test_a_drive_of_maxon_is_an_epos4_by_its_objects(write, more, unit_n_m) -> None:
     assert family_of(read_data_sheet(write(IDENTITY + more))).torque_unit_n_m == unit_n_m
+
+
+def test_a_drive_that_lists_homing_has_it_where_its_modes_are_not_told(write) -> None:
+    family = family_of(read_data_sheet(write(IDENTITY)))
+    modes = next(one.entries[0] for one in family.objects(Rating.of(behind_a_drive())) if one.index == 0x6502)
+    assert 6 in family.modes
+    assert modes.default == mode_bits(family.modes)
 
 
 def test_a_value_that_is_no_number_is_not_told(write) -> None:

@@ -146,6 +146,7 @@ TRAITS: dict[str, Trait] = {
         default={(0x1400 + number, 2): 254 + number % 2 for number in range(4)},
     ),
     "current-in-no-pdo": Trait(without=(0x6078,), added=(variable(0x6078, "Current actual value", I16, Access.RO),)),
+    "limits-as-delivered": Trait(default={(0x6072, 0): 0, (0x6073, 0): 0}),
     "heartbeat-limited-as-a-time": Trait(
         high={(0x1016, 1): 0xFFFF, (0x1016, 2): 0xFFFF}, without=(0x100C, 0x100D), without_places=RPDO_TIMERS
     ),

@@ -8,15 +8,17 @@ from sim_backend.devices.canopen.objects.communication import MOST_PDOS, PDOS, p
 from sim_backend.devices.canopen.objects.data_sheet import DataSheet
 from sim_backend.devices.canopen.objects.entry import Entry, Object
 from sim_backend.devices.canopen.objects.epos4 import EPOS4, MAXON
-from sim_backend.devices.canopen.objects.family import Family, Rating, increment
+from sim_backend.devices.canopen.objects.family import Family, Rating, increment, mode_bits, with_defaults
 from sim_backend.devices.canopen.objects.generic import GENERIC
 from sim_backend.devices.canopen.objects.homing import homing_objects
 
-_DEVICE_NAME, _CONSUMER_HEARTBEAT, _HOMING_METHOD = 0x1008, 0x1016, 0x6098
+_DEVICE_NAME, _CONSUMER_HEARTBEAT, _HOMING_METHOD, _SUPPORTED_MODES = 0x1008, 0x1016, 0x6098, 0x6502
+_HOMING = 6  # of 0x6060
 _OF_EPOS4 = frozenset({(0x3001, 2), (0x30D1, 2)})  # where it keeps limit and current; maxon's drives before it do not
 _LINK_TO_MAPPING = 0x1400 ^ 0x1600  # from the communication parameter of a PDO to its mapping parameter, and back
 # what whoever commissions a drive enters for the motor on it; a data sheet cannot know it
 _OF_THE_MOTOR = frozenset({(0x6075, 0), (0x6076, 0), (0x608F, 1), (0x608F, 2), (0x3001, 1), (0x3001, 2), (0x3001, 5)})
+_LIMITS = frozenset({(0x6072, 0), (0x6073, 0)})  # of the motor as well, where they are delivered as 0: no torque at all
 _REVOLUTION, _RADIAN, _DEGREE = 0xB4, 0x10, 0x41  # of CiA 303-2
 _INCREMENT_PER_S2, _RPM_PER_S = (0xB5, 0x57), (0xC0, 0x03)  # numerator and denominator; the second is maxon's
 _ANGLES_RAD = {_REVOLUTION: 2.0 * pi, _RADIAN: 1.0, _DEGREE: pi / 180.0}
@@ -31,11 +33,14 @@ def family_of(sheet: DataSheet) -> Family:
     name = f"{sheet.name}, simulated"
     places = {(one.index, entry.subindex) for one in sheet.objects for entry in one.entries}
     base = EPOS4 if sheet.default(0x1018, 1) == MAXON and places >= _OF_EPOS4 else GENERIC
+    modes = _modes(sheet) or base.modes | ({_HOMING} if (_HOMING_METHOD, 0) in places else set())
     return Family(
         name=sheet.name,
         device_name=name,
-        modes=_modes(sheet) or base.modes,
-        objects=lambda rating: _objects(sheet, base, rating),
+        modes=modes,
+        objects=lambda rating: _objects(
+            sheet, with_defaults(base.objects(rating), {_SUPPORTED_MODES: mode_bits(modes)}), rating
+        ),
         velocity_rad_s=_velocity_unit(sheet),
         acceleration_rad_s2=_acceleration_unit(sheet),
         torque_unit_n_m=base.torque_unit_n_m,
@@ -47,18 +52,18 @@ def family_of(sheet: DataSheet) -> Family:
 
 
 def _modes(sheet: DataSheet) -> frozenset[int]:
-    bits = sheet.default(0x6502) or 0
+    bits = sheet.default(_SUPPORTED_MODES) or 0
     return frozenset(mode for mode in range(1, 12) if bits >> (mode - 1) & 1)
 
 
-def _objects(sheet: DataSheet, base: Family, rating: Rating) -> list[Object]:
+def _objects(sheet: DataSheet, base: list[Object], rating: Rating) -> list[Object]:
     """The file's objects, and hidden ones for whatever the drive works with beside them."""
     listed = {one.index for one in sheet.objects}
     homing = homing_objects(rating) if _HOMING_METHOD in listed else ()
     more = [
         one for one in pdos(range(PDOS, MOST_PDOS)) if one.index in listed or one.index ^ _LINK_TO_MAPPING in listed
     ]
-    inside = {one.index: one for one in (*homing, *more, *base.objects(rating))}
+    inside = {one.index: one for one in (*homing, *more, *base)}
     made = [_visible(one, inside.pop(one.index, None), sheet) for one in sheet.objects]
     return [*made, *(_hidden(one) for one in inside.values())]
 
@@ -78,7 +83,7 @@ def _entry(index: int, entry: Entry, behind: Entry | None, sheet: DataSheet) -> 
         entry = replace(entry, high=None)  # of the time alone: node 0, which is none, would be all that it lets in
     if behind is None or type(behind.default) is not type(entry.default):
         return entry
-    if place not in sheet.told or place in _OF_THE_MOTOR:
+    if place not in sheet.told or place in _OF_THE_MOTOR or (place in _LIMITS and not entry.default):
         return replace(entry, default=behind.default, with_node_id=behind.with_node_id)
     return entry
 
