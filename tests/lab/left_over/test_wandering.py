@@ -153,11 +153,12 @@ def test_long_trials_have_longer_cells_and_of_many_trials_some_are_looked_at(mon
     assert max(len(trial.time_s) for trial in trials) <= 11 + strokes
 
 
-def test_friction_that_is_another_one_in_each_trial_does_not_wander():
+@pytest.mark.parametrize("of", [np.sign, np.ones_like], ids=["friction", "a force"])
+def test_what_is_another_one_in_each_trial_does_not_wander(of):
     """That is scatter from trial to trial, which every term of a model has."""
     random = np.random.default_rng(11)
 
     def extra(x):
-        return 0.03 * COULOMB_N_M * random.standard_normal() * np.sign(x.v)
+        return 0.03 * COULOMB_N_M * random.standard_normal() * of(x.v)
 
     assert judged(fitted(extra)) is None
