@@ -262,6 +262,42 @@ def _units() -> dict[str, Foreign]:
     }  # fmt: skip
 
 
+def _names() -> dict[str, Foreign]:
+    """What a name says may be meant otherwise: "current" is now, "measured" is by whom, a unit is of a sensor."""
+    motion = {"time": TIME_S, "pos": POSITION_RAD}
+    torque = {**TRUTH, "torque_n_m": CURRENT_A}
+    torque.pop("current_a")
+    both = {**torque, "load_torque_n_m": 0.8 * CURRENT_A}
+    measured = {**motion, "measured_torque": CURRENT_A, "commanded_torque": 1.1 * CURRENT_A}
+    return {
+        "current is present": Foreign("a.csv", _text({
+            "time": TIME_S, "current_position": POSITION_RAD, "currentVelocity": VELOCITY_RAD_S, "Current": CURRENT_A}),
+            truth={**TRUTH, "velocity_rad_s": VELOCITY_RAD_S}),
+        "current is present, by the unit": Foreign("a.csv", _text({
+            "time": TIME_S, "Current (deg)": DEGREES, "Current (A)": CURRENT_A})),
+        "current of an axis": Foreign("a.csv", _text({**motion, "current_q": CURRENT_A})),
+        "a torque and its current, by the unit": Foreign("a.csv", _text({
+            **motion, "torque current [A]": CURRENT_A})),
+        "measured torque alone": Foreign("a.csv", _text({**motion, "torque_measured": CURRENT_A}), truth=torque),
+        "measured torque of the motor": Foreign("a.csv", _text({
+            **motion, "motor torque measured [Nm]": CURRENT_A, "brake torque [Nm]": 0.8 * CURRENT_A}), truth=both),
+        "measured torque beside the motor's": Foreign("a.csv", _text({
+            **motion, "measured_torque": 0.8 * CURRENT_A, "motor_torque": CURRENT_A}), truth=both),
+        "measured torque beside a command": Foreign("a.csv", _text(measured), asks=(
+            r"may be the torque of the motor, or of a sensor at the load: say --take 'measured_torque=torque\[N m\]'")),
+        "measured torque beside a current": Foreign("a.csv", _text({
+            **motion, "measured_torque": CURRENT_A, "current": CURRENT_A}), asks="or of a sensor at the load"),
+        "measured torque beside a command, said": Foreign("a.csv", _text(measured), truth=torque, known=Known(
+            read_said(["measured_torque=torque[N m]"]))),
+        "a force in volts": Foreign("a.csv", _text({"t": TIME_S, "pos_m": POSITION_RAD, "Force [V]": CURRENT_A}),
+            asks=r"says V in its name, which is no unit of force: say --take 'Force \[V\]=force\[N\]' where"),
+        "a torque in per cent": Foreign("a.csv", _text({**motion, "torque [%]": CURRENT_A}),
+            asks=r"says % in its name, which is no unit of torque"),
+        "a torque in per cent, said": Foreign("a.csv", _text({**motion, "torque [%]": CURRENT_A}), truth=torque,
+            known=Known(read_said(["torque [%]=torque[N m]"]))),
+    }  # fmt: skip
+
+
 def _stamps() -> dict[str, Foreign]:
     rest = {"position_rad": POSITION_RAD, "current_a": CURRENT_A}
     lines = PLAIN.decode().splitlines(keepends=True)
@@ -337,4 +373,4 @@ def _formats() -> dict[str, Foreign]:
     }  # fmt: skip
 
 
-FILES: dict[str, Foreign] = {**_text_files(), **_units(), **_stamps(), **_formats()}
+FILES: dict[str, Foreign] = {**_text_files(), **_units(), **_names(), **_stamps(), **_formats()}

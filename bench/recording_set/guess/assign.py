@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.formats.column_table import Columns
 from bench.recording_set.guess.evidence import is_clock
-from bench.recording_set.guess.names import UNITS_OF, Reading, read_name, same_kind
+from bench.recording_set.guess.names import DRIVE, TARGET, UNITS_OF, Reading, read_name, same_kind
 from bench.recording_set.mapping import STAMP
 from bench.recording_set.text.dialect import is_stamp
 from bench.recording_set.units import unit_named, units_of
@@ -110,7 +110,7 @@ def assign(files: Sequence[Columns], said: MappingOf[str, Said]) -> Assigned:
             unused[name] = why
     _clock(columns, candidates, unused)
     chosen: dict[str, tuple[str, ...]] = {}
-    questions = []
+    questions = _measured_torque(candidates, readings, said)
     for quantity, names in candidates.items():
         wanted = [name for name in names if name in everywhere or name in said] or names
         best, tied = _best(quantity, wanted, columns, readings, said)
@@ -148,6 +148,25 @@ def _clock(columns: Columns, candidates: dict[str, list[str]], unused: dict[str,
     if len(rising) == 1:
         candidates["time"] = rising
         del unused[rising[0]]
+
+
+def _measured_torque(
+    candidates: dict[str, list[str]], readings: dict[str, Reading], said: MappingOf[str, Said]
+) -> list[str]:
+    """A torque that is "measured" is the effort where nothing else is; beside one of the motor it is the load's."""
+    torques = candidates.get("torque", [])
+    measured = [name for name in torques if "measured" in readings[name].words and not readings[name].words & DRIVE]
+    others = [name for name in torques if name not in measured]
+    if not measured or measured[0] in said or "load_torque" in candidates:
+        return []
+    if any(name in said or not readings[name].words & TARGET for name in others):
+        candidates["torque"], candidates["load_torque"] = others, measured
+        return []
+    if not others and not candidates.keys() & {"current", "voltage", "duty"}:
+        return []
+    name = measured[0]
+    options = " or ".join(f"--take '{name}={one}[N m]'" for one in ("torque", "load_torque"))
+    return [f"'{name}' may be the torque of the motor, or of a sensor at the load: say {options}"]
 
 
 def _best(

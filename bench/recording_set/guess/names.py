@@ -10,6 +10,7 @@ from compensator.lab.recordings.recording import CHANNELS
 
 _BRACKET = re.compile(r"^(?P<base>.*?)\s*[\[({<](?P<unit>[^\])}>]*)[\])}>]\s*$")
 LOOKED_AT = 200  # characters of a name
+MOTION = ("position", "velocity")
 _WORD = re.compile(r"[A-ZÄÖÜ]?[a-zäöüßàâéèêíóúñùµθωτφ]+|[A-ZÄÖÜ]+(?![a-z])|\d+")
 # SI unit -> quantity, where the words say nothing
 BY_UNIT = {
@@ -72,9 +73,11 @@ TARGET = _listed(
     "objetivo referencia dem"
 )
 ERROR = _listed("error err deviation abweichung fehler schleppfehler erreur residual std rms var covariance status")
+PRESENT = _listed("current curr cur")
 MEASURED = _listed("actual act measured meas ist istwert feedback fb present real mes mesuré medido encoder")
 DERIVED = _listed("filtered filt lp smooth estimate estimated est sim simulated model hat pred predicted")
-SENSOR = _listed("sensor cell loadcell transducer messwelle measured external extern output load")
+SENSOR = _listed("sensor cell loadcell transducer messwelle external extern output load brake bremse")
+DRIVE = _listed("motor drive servo actuator antrieb")
 OTHER_AXIS = _listed("d id ia ib ic phase a b c")  # of a vector drive: not what makes torque
 JOINT_SIDE = _listed("joint output link arm load abtrieb gelenk")
 
@@ -88,12 +91,14 @@ class Reading:
         unit: None where it says none.
         score: how sure and how direct; the best of several columns of one quantity is taken.
         words: of the name.
+        unfit: the unit that it says and that is none of its quantity; "" where there is none.
     """
 
     quantity: str
     unit: Unit | None
     score: float
     words: frozenset[str]
+    unfit: str = ""
 
 
 def read_name(name: str) -> Reading:
@@ -102,36 +107,38 @@ def read_name(name: str) -> Reading:
         return Reading(
             _OF_CHANNEL[name], unit_named(CHANNELS[name].unit) if name in CHANNELS else None, 10.0, frozenset()
         )
-    base, unit = _unit(name[:LOOKED_AT])
-    words = _words(base)
-    quantity = _quantity(words)
+    base, unit, clear = _unit(name[:LOOKED_AT])
+    told = unit if clear else None
+    words = _present(_words(base), told)
+    quantity, unfit = _quantity(words, told), ""
     if unit is not None and quantity and unit.si not in UNITS_OF.get(quantity, (unit.si,)):
         if _is_named_by(words, quantity) or unit.si == "1":
-            unit = None  # "theta_m" is no length, and "torque %" no torque that is known
+            # "theta_m" is no length; what "torque [%]" is has to be asked
+            unfit, unit = unit.name if clear else "", None
         else:
             quantity = ""
     if not quantity and unit is not None and not words & ERROR:
         quantity = BY_UNIT.get(unit.si, "")
     quantity = _told_apart(quantity, words)
-    return Reading(quantity, unit, _score(words, unit, quantity), words)
+    return Reading(quantity, unit, _score(words, unit, quantity) - 1.0 * bool(unfit), words, unfit)
 
 
-def _unit(name: str) -> tuple[str, Unit | None]:
-    """The name without its unit, and the unit."""
+def _unit(name: str) -> tuple[str, Unit | None, bool]:
+    """The name without its unit, the unit, and whether it is clearly one: a letter at the end may be anything."""
     text = unicodedata.normalize("NFKC", name).strip()
     if match := _BRACKET.match(text):
         unit = unit_named(match["unit"])
-        return match["base"] or text, unit
+        return match["base"] or text, unit, True
     for sign in ("/", ",", " in "):
         for place in (index for index in range(1, len(text)) if text.startswith(sign, index)):
             unit = unit_named(text[place + len(sign) :])
             if unit is not None and text[:place].strip():
-                return text[:place], unit
+                return text[:place], unit, True
     parts = re.split(r"[_ .]", text)
     for count in (3, 2, 1):
         if len(parts) > count and (unit := unit_named("_".join(parts[-count:]))):
-            return "_".join(parts[:-count]), unit
-    return text, unit_named(text) if len(text) > 1 else None
+            return "_".join(parts[:-count]), unit, not (len(parts[-1]) == count == 1 and parts[-1].isalnum())
+    return text, unit_named(text) if len(text) > 1 else None, True
 
 
 def _words(base: str) -> frozenset[str]:
@@ -139,13 +146,22 @@ def _words(base: str) -> frozenset[str]:
     return frozenset(word.lower() for word in _WORD.findall(plain) if not word.isdigit())
 
 
-def _quantity(words: frozenset[str]) -> str:
+def _present(words: frozenset[str], unit: Unit | None) -> frozenset[str]:
+    """The words, "present" for a "current" that is no ampere: "current position". ("current q" is one of a motor.)"""
+    longer = {word for word in words if len(word) > 1}
+    motion = unit is not None and not unit.counts and BY_UNIT.get(unit.si) in MOTION
+    if words & PRESENT and (motion or any(longer & known for quantity, known in WORDS if quantity in MOTION)):
+        return words - PRESENT | {"present"}
+    return words
+
+
+def _quantity(words: frozenset[str], unit: Unit | None) -> str:
+    """The quantity of some words: the first that has the unit that is told, else the first."""
     if words & ERROR:
         return ""
-    for quantity, known in WORDS:
-        if words & known:
-            return quantity
-    return _compound(words)
+    found = [quantity for quantity, known in WORDS if words & known]
+    fitting = [quantity for quantity in found if unit is not None and unit.si in UNITS_OF.get(quantity, ())]
+    return next(iter(fitting or found), "") or _compound(words)
 
 
 def _compound(words: frozenset[str]) -> str:
@@ -167,7 +183,7 @@ def _told_apart(quantity: str, words: frozenset[str]) -> str:
     wanted = bool(words & TARGET) or any(word.startswith("soll") for word in words)
     if wanted:
         return {"position": "target", "": "target", "current": "current_command", "torque": "torque"}.get(quantity, "")
-    if quantity == "torque" and words & SENSOR:
+    if quantity == "torque" and words & SENSOR and not words & DRIVE:
         return "load_torque"
     return quantity if quantity in UNITS_OF else ""
 

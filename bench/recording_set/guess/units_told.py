@@ -28,7 +28,7 @@ _CHANNEL = {
     "temperature": "temperature_c",
     "enabled": "enabled",
 }
-_PLAIN = "no unit in its name: taken as SI"
+_PLAIN = "no known unit in its name: taken as SI"
 LARGE_RATE = 300.0  # without a unit: rad/s of a motor, or rpm
 OUTLINE = 400  # values of a column that are shown
 AGREE = 1.5  # factor between the rate of a position and a speed: more is another unit
@@ -64,6 +64,7 @@ class Units:
         for quantity in assigned.columns:
             if quantity not in ("time", *MOTION):
                 self._units[quantity] = self._told(quantity) or self._plain(quantity, UNITS_OF[quantity][0])
+        self._check_names()
         self._check_range()
 
     def column_of(self, quantity: str, names: tuple[str, ...]) -> Column | None:
@@ -252,6 +253,18 @@ class Units:
             return
         if back_and_forth(values) and self._period() is None:
             self._ask("position", f"goes back and forth between {_range(values)}", ("deg", "rad"))
+
+    def _check_names(self) -> None:
+        """Units that names say, and that are none of what their words say."""
+        for quantity in self._units:
+            name, si = self._name(quantity), self._units[quantity].si
+            if (unfit := self._assigned.readings[name].unfit) and not self._is_sure(quantity):
+                self.why[name] = "it is asked about"
+                self.questions.append(
+                    f"'{name}' says {unfit} in its name, which is no unit of {quantity}: say --take "
+                    f"'{name}={quantity}[{si}]' where it is {si}, or where a scale in the mapping will make it so, "
+                    f"else --take '{name}=ignore'"
+                )
 
     def _check_range(self) -> None:
         """Values outside physics."""
