@@ -201,6 +201,16 @@ def _units() -> dict[str, Foreign]:
         "speed of nothing known, said": Foreign(
             "a.csv", motor_side(2.3), known=Known(read_said(["Winkel [deg]=position[deg]"])),
             truth={**TRUTH, "velocity_rad_s": 2.3 * VELOCITY_RAD_S}),
+        "speed of nothing known, which no import takes": Foreign(
+            "a.csv", motor_side(3.3), known=Known(read_said(["Winkel [deg]=position[deg]"])),
+            asks=r"no import takes: leave one out, --take 'Drehzahl .U/min.=ignore'"),
+        "counts of another turn": Foreign("a.csv", _text({
+            "t": TIME_S, "enc": COUNTS, "vel [rad/s]": VELOCITY_RAD_S, "i": CURRENT_A}),
+            known=Known({}, counts_per_turn=1000.0),
+            asks=r"'enc' in counts changes 16.4 times as fast as 'vel .rad/s.'.*--take 'vel .rad/s.=ignore'"),
+        "speed told by counts": Foreign("a.csv", _text({
+            "t": TIME_S, "enc": COUNTS, "speed": VELOCITY_RAD_S * 180.0 / np.pi, "i": CURRENT_A}),
+            known=Known({}, counts_per_turn=16384.0), truth=both, digits=3),
         "counts, not told": Foreign("a.csv", _text({"t": TIME_S, "enc": COUNTS, "i": CURRENT_A}),
                                     asks="--counts-per-turn"),
         "counts": Foreign("a.csv", _text({"t": TIME_S, "enc": COUNTS, "i": CURRENT_A}),

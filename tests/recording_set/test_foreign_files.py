@@ -113,6 +113,14 @@ def test_a_question_names_the_files_that_it_is_about(tmp_path: Path) -> None:
         read_unknown([folder / "b.csv"], None, Known({}))
 
 
+def test_what_an_import_refuses_is_asked_by_the_guess(tmp_path: Path) -> None:
+    time_s = np.arange(400) * 0.01
+    table = np.column_stack([time_s, np.sin(time_s), -np.cos(time_s), np.cos(time_s)])
+    np.savetxt(tmp_path / "log.csv", table, "%.6f", ",", header="t,pos,vel,i", comments="")
+    (question,) = guess_of([tmp_path / "log.csv"], None, Known({}))[0].questions
+    assert re.search("an import refuses this: .*position_rad and velocity_rad_s have opposite signs", question)
+
+
 def test_numbers_beyond_any_clock_are_no_time(tmp_path: Path) -> None:
     path = tmp_path / "large.csv"
     rows = [f"{(-1) ** i * 1.7e308 * (0.5 + i / 80)!r},{0.01 * i:g},0.5" for i in range(40)]

@@ -11,7 +11,8 @@ from bench.recording_set.guess.clock import clock_of
 from bench.recording_set.guess.evidence import NEAR, are_whole, gear_behind, period_of, slope, unit_by_slope
 from bench.recording_set.guess.names import UNITS_OF
 from bench.recording_set.mapping import Column
-from bench.recording_set.units import UNITS, Unit, unit_named
+from bench.recording_set.units import TURN, UNITS, Unit, unit_named
+from compensator.lab.recordings.channel_checks import FACTOR
 from compensator.lab.recordings.recording import CHANNELS, FloatArray
 
 MOTION = ("position", "velocity", "target")
@@ -137,6 +138,10 @@ class Units:
         """What makes a value one of the joint, beside its unit."""
         return 1.0 / self.gear if self.gear is not None and quantity == "velocity" else 1.0
 
+    def _factor(self, unit: Unit) -> float:
+        """Of a unit to SI; NaN of counts where nobody says how many a turn has."""
+        return unit.factor * (TURN / (self._counts or np.nan) if unit.counts else 1.0)
+
     def _plain(self, quantity: str, si: str) -> Unit:
         self.why[self._name(quantity)] = _PLAIN
         return unit_named(si) or Unit(si, si)
@@ -148,9 +153,9 @@ class Units:
             return units[0] in ("m", "m/s")
         return "force" in self._assigned.columns and "torque" not in self._assigned.columns
 
-    def _ask(self, quantity: str, sentence: str, units: Sequence[str]) -> None:
+    def _ask(self, quantity: str, sentence: str, units: Sequence[str], *others: str) -> None:
         name = self._name(quantity)
-        options = " or ".join(f"--take '{name}={quantity}[{unit}]'" for unit in dict.fromkeys(units))
+        options = " or ".join([*(f"--take '{name}={quantity}[{unit}]'" for unit in dict.fromkeys(units)), *others])
         self.questions.append(f"'{name}' {sentence}: say {options}")
 
     def _motion(self) -> None:
@@ -207,9 +212,9 @@ class Units:
 
     def _velocity_unit(self, rate: float | None) -> Unit:
         name, position = self._name("velocity"), self._units.get("position")
-        if position is not None and not position.counts and rate is not None:
+        if position is not None and rate is not None:
             for unit in _units_of(f"{self._place}/s"):
-                if abs(abs(rate) * position.factor / unit.factor - 1.0) < NEAR:
+                if abs(abs(rate) * self._factor(position) / unit.factor - 1.0) < NEAR:
                     self.why[name] = f"it is the rate of the position in {position.name}"
                     return unit
         values = self._numbers("velocity")
@@ -220,10 +225,10 @@ class Units:
     def _check_rate(self, rate: float | None, firm: bool) -> None:
         """Two units that deny each other, or a speed of the motor; `firm` where both units are told."""
         position, velocity = self._units.get("position"), self._units.get("velocity")
-        if rate is None or position is None or velocity is None or position.counts or velocity.counts:
+        if rate is None or position is None or velocity is None:
             return
-        ratio = abs(rate) * position.factor / velocity.factor
-        if 1.0 / AGREE < ratio < AGREE:
+        ratio = abs(rate) * self._factor(position) / self._factor(velocity)
+        if np.isnan(ratio) or 1.0 / AGREE < ratio < AGREE:
             return
         gear = gear_behind(1.0 / ratio, self._gear_ratio) if firm else None
         near = unit_by_slope(rate / velocity.factor, _units_of(self._place))
@@ -232,10 +237,13 @@ class Units:
         found = f"in {position.name} changes {ratio:.3g} times as fast as '{speed}' in {velocity.name}"
         if gear is not None and (sure or near is None):
             self._take_as_motor(gear, f"'{name}' {found}")
-        elif sure or self._is_sure("velocity"):
+        elif not (sure or self._is_sure("velocity")):
+            units = [near.name, position.name] if near else [position.name, "deg", "rad"]
+            self._ask("position", found, units, f"--take '{speed}=ignore', which leaves the speed out")
+        elif 1.0 / FACTOR < ratio < FACTOR:
             self.notes.append(f"'{name}' {found}: taken as said; --take '{speed}=ignore' leaves the speed out")
         else:
-            self._ask("position", found, [near.name, position.name] if near else [position.name, "deg", "rad"])
+            self.questions.append(f"'{name}' {found}, which no import takes: leave one out, --take '{speed}=ignore'")
 
     def _take_as_motor(self, gear: float, found: str) -> None:
         """The speed as one of the motor."""

@@ -76,9 +76,21 @@ def _trials_columns(container: Container) -> dict[str, str | Renamed]:
 def guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Guess, Rig, tuple[str, ...]]:
     """What the columns of files may be, the rig that is assumed, and how the files were read.
 
+    What the import of this guess refuses is a question.
+
     Raises:
         RecordingSetError: a file that cannot be read, or a column that is not there.
     """
+    guess, rig, notes = _guess_of(paths, rig, known)
+    if not guess.questions:
+        try:
+            read_recording_set(paths, guess.mapping, rig)
+        except RecordingSetError as error:
+            guess = replace(guess, questions=(f"an import refuses this: {error}",))
+    return guess, rig, notes
+
+
+def _guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Guess, Rig, tuple[str, ...]]:
     own = rig or _own_rig(paths)
     with open_container(*paths) as container:
         lists_trials = container.has(TRIALS_FILE)
@@ -112,7 +124,7 @@ def read_unknown(
         return read_recording_set(paths, mapping, rig or _own_rig(paths) or assumed), None
     if known == NOTHING and (own := _as_recording_set(paths, rig)) is not None:
         return own, None
-    guess, rig, _ = guess_of(paths, rig, known)
+    guess, rig, _ = _guess_of(paths, rig, known)
     check_answered(guess)
     return read_recording_set(paths, guess.mapping, rig), guess
 

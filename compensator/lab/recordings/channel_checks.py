@@ -150,18 +150,20 @@ def _scale(recording: Recording, unit: str) -> str:
     for name, own, other, least in pairs:
         factor = _factor(own, other)
         if factor is not None and not least < factor < FACTOR:
-            return f"position_{unit} and {name} {_unlike(factor)}"
+            return f"position_{unit} and {name} {_unlike(factor, f'position_{unit}', name)}"
     return ""
 
 
-def _unlike(factor: float) -> str:
+def _unlike(factor: float, own: str, other: str) -> str:
     if abs(abs(factor) - 1.0) < 0.5:
         return (
             "have opposite signs; turn the sign of one of them, so that they agree with the effort's, and import again"
         )
     hint = " (degrees?)" if abs(np.log(abs(factor) / DEGREES)) < 0.1 else ""
     return (
-        f"differ by a factor of {factor:.3g}{hint}; map the one that is wrong with its scale to rad, m or their rates"
+        f"differ by a factor of {factor:.3g}{hint}; give the one that is wrong its scale in the mapping (scale = "
+        f"{factor:.3g} for {other}, {1.0 / factor:.3g} for {own}), or leave it out: import --guess with --take "
+        "'NAME=ignore', the name of its column"
     )
 
 
