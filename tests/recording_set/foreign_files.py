@@ -147,6 +147,11 @@ def _text_files() -> dict[str, Foreign]:
         "short last line": Foreign("a.csv", PLAIN + b"4.0,0.1", asks="found 2 cells; wanted 3"),
         "text in a number": Foreign("a.csv", PLAIN.replace(b"\n0.5,", b"\n0.5,OVERRUN", 1),
                                     asks="line 52, column 'position_rad': found 'OVERRUN"),
+        "pandas, with its index": Foreign("a.csv", pd.DataFrame(COLUMNS).to_csv().encode()),
+        "pandas, with the time as its index": Foreign(
+            "a.csv", pd.DataFrame(COLUMNS).set_index("time_s").rename_axis(None).to_csv().encode()),
+        "pandas, without a time": Foreign(
+            "a.csv", pd.DataFrame(COLUMNS).drop(columns="time_s").to_csv().encode(), asks="no column is a time"),
         "no header": Foreign("a.csv", _text(COLUMNS, header=None), asks="no column is a position"),
         "no header, said": Foreign("a.csv", _text(COLUMNS, header=None), known=Known(read_said(
             ["column 1=time[s]", "column 2=position[rad]", "column 3=current[A]"]))),

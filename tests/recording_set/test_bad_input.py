@@ -47,7 +47,7 @@ BAD_CSV: dict[str, tuple[str | bytes, str]] = {
         "column 'humidity': is no known channel. Not known either: wind. Known: time_s",
     ),
     "column twice": ("time_s,duty,duty\n0,1,1\n", "line 1, column 'duty': is there twice"),
-    "column without a name": ("time_s,,duty\n0,1,1\n", "line 1: column 2 has no name"),
+    "column without a name": ("time_s,,duty\n0,1,1\n", "line 1, column 'column 2': is no known channel"),
     "short line": ("time_s,duty\n0,1\n1\n2,1\n", "line 3: found 1 cells; wanted 2, one per column"),
     "long line": ("time_s,duty\n0,1\n1,1,1\n2,1\n", "line 3: found 3 cells; wanted 2"),
     "open quote": ('time_s,duty\n0,1\n1,"1\n2,1\n', "unexpected end of data; wanted cells between ','"),

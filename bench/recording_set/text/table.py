@@ -130,7 +130,7 @@ class Table:
             self.header = list(self.dialect.header) or self._plain_header(text)
         self.header_line = max(self.dialect.header_line, 1)
         self.rate_hz = self.dialect.rate_hz
-        self._check_header()
+        self._check_header(numeric)
         self.told = self._told(delimiter, decimal, encoding)
 
     def _dialect(self, lines: list[str], delimiter: str | None, decimal: str | None, numeric: bool) -> Dialect:
@@ -221,9 +221,11 @@ class Table:
                     return self.error(f"{found}; save the file as CSV UTF-8", number)
         return self.error("is not UTF-8; save the file as CSV UTF-8")
 
-    def _check_header(self) -> None:
+    def _check_header(self, numeric: bool) -> None:
         if not any(self.header):
             raise self.error("the file or its first line is empty; wanted a header of column names")
+        if numeric:  # pandas leaves the index of a table without a name
+            self.header = [name or f"column {number}" for number, name in enumerate(self.header, start=1)]
         seen: set[str] = set()
         for position, name in enumerate(self.header):
             if len(name) > LONGEST_NAME:
