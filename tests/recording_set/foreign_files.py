@@ -355,6 +355,17 @@ def _hdf5(file: io.BytesIO) -> None:
             made[f"log/{name}"] = values
 
 
+def _simulink(file: io.BytesIO, columns: dict[str, np.ndarray]) -> None:
+    """A logged signal as MATLAB 7.3 keeps it: a reference to an object, and its bytes among MATLAB's own groups."""
+    with h5py.File(file, "w") as made:
+        made["out"] = np.arange(6, dtype="u4").reshape(1, 6)
+        made["out"].attrs["MATLAB_object_decode"] = 3
+        for number in range(5):
+            made[f"#sigstream#/{number}/#data#"] = np.zeros(5000, "u1")
+        for name, values in columns.items():
+            made[name] = values
+
+
 def _formats() -> dict[str, Foreign]:
     frame = pd.DataFrame(GERMAN)
     struct = {"log": {"time": TIME_S, "angle_deg": DEGREES, "current_a": CURRENT_A, "note": "first"}}
@@ -363,11 +374,22 @@ def _formats() -> dict[str, Foreign]:
         {"t": r["time_s"], "joint": {"position_rad": r["position_rad"], "current_a": r["current_a"]}} for r in records
     ]
     simulink = {"out": {"time": TIME_S, "signals": {"values": np.column_stack([POSITION_RAD, CURRENT_A])}}}
+    signals = [
+        {"Name": name, "Data": values, "Unit": "", "XIndex": 1.0}
+        for name, values in (("Root/angle_rad", POSITION_RAD), ("Root/current_a", CURRENT_A))
+    ]
+    capture = {"X": {"Name": "", "Data": TIME_S, "Unit": "", "Raster": ""}, "Y": signals, "Description": {"Author": ""}}
+    unnamed = {"t": TIME_S, "Y": [{"q_rad": POSITION_RAD}, {"i_a": CURRENT_A}]}
     return {
         "mat, variables": Foreign("a.mat", _bytes(lambda f: savemat(f, {**COLUMNS, "gear": 7.0}))),
         "mat, structure": Foreign("a.mat", _bytes(lambda f: savemat(f, struct))),
         "mat, signals": Foreign("a.mat", _bytes(lambda f: savemat(f, simulink)), known=Known(read_said(
             ["signals.values 1=position[rad]", "signals.values 2=current[A]"]))),
+        "mat, a list of signals": Foreign("a.mat", _bytes(lambda f: savemat(f, {"run1": capture})), known=Known(
+            read_said(["X.Data=time[s]", "Y.Root/angle_rad.Data=position[rad]", "Y.Root/current_a.Data=current[A]"]))),
+        "mat, a list of signals without names": Foreign("a.mat", _bytes(lambda f: savemat(f, unnamed))),
+        "mat 7.3, Simulink": Foreign("a.mat", _bytes(lambda f: _simulink(f, {})), asks="holds MATLAB objects .*plain"),
+        "mat 7.3, Simulink beside arrays": Foreign("a.mat", _bytes(lambda f: _simulink(f, COLUMNS))),
         "npz": Foreign("a.npz", _bytes(lambda f: np.savez(f, **COLUMNS))),
         "npy, columns": Foreign("a.npy", _bytes(lambda f: np.save(f, np.column_stack(list(COLUMNS.values())))),
                                 asks="no column is a position"),

@@ -76,7 +76,7 @@ def table_of(place: str, arrays: Arrays) -> ColumnTable:
             columns[name] = values
         elif values.size == 1:
             rate_hz = rate_hz or _rate_hz(name, values)
-        else:
+        elif values.size:  # MATLAB keeps every text that nobody wrote as an empty array
             columns |= _columns(name, values)
     lengths: dict[int, int] = {}
     for one in columns.values():

@@ -1,6 +1,7 @@
 """HDF5 files, and MATLAB files of version 7.3, by h5py."""
 
 import io
+import re
 from types import ModuleType
 
 import numpy as np
@@ -8,6 +9,8 @@ import numpy as np
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.formats.column_table import SHOWN_OF_NAME, Arrays, ColumnTable, check_unpacked, table_of
 
+_INSIDE = re.compile("(^|/)#[^/]*#(/|$)")  # what MATLAB keeps for itself
+_OBJECT = "MATLAB_object_decode"  # attribute of what only points there
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
@@ -20,9 +23,12 @@ def read(place: str, data: bytes) -> ColumnTable:
     h5py = _h5py(place)
     arrays: Arrays = {}
     sizes: list[int] = []
+    objects: list[str] = []
 
     def take(name: str, item: object) -> None:
-        if isinstance(item, h5py.Dataset) and item.dtype.kind in "biufSV" and "#refs#" not in name:
+        if not _INSIDE.search(name) and _OBJECT in getattr(item, "attrs", ()):
+            objects.append(name)
+        elif isinstance(item, h5py.Dataset) and item.dtype.kind in "biufSV" and not _INSIDE.search(name):
             if item.external or item.is_virtual:
                 message = (
                     f"keeps '{name[:SHOWN_OF_NAME]}' in another file, which is not read; save it with all its data"
@@ -39,6 +45,12 @@ def read(place: str, data: bytes) -> ColumnTable:
         raise
     except Exception as error:  # damaged bytes break the library anywhere
         raise RecordingSetError(place, f"is no HDF5 file, or a damaged one ({error}); save it again") from error
+    if objects and not arrays:
+        message = (
+            f"holds MATLAB objects (Simulink, timeseries), which are not read, in '{objects[0][:SHOWN_OF_NAME]}'; save "
+            "plain arrays from MATLAB, such as t = x.Time; q = x.Data; save('log.mat', 't', 'q')"
+        )
+        raise RecordingSetError(place, message)
     return table_of(place, _without_common(arrays))
 
 

@@ -14,6 +14,7 @@ from bench.recording_set.formats.column_table import MOST_UNPACKED, ColumnTable,
 
 _HDF5 = b"MATLAB 7.3"
 _COMPRESSED = 15  # type of an element
+_NAMES = ("Name", "name", "label")  # of a structure of a list
 _PIECE = 2**20  # bytes
 
 
@@ -59,12 +60,24 @@ def _unpacked_bytes(data: bytes) -> int:
 
 
 def _flat(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Structures within structures as names with points; a structure that holds everything is looked through."""
+    """Structures within structures as names with points; a structure that holds everything is looked through.
+
+    Those of a list go by names of their own, where they have them, else by numbers.
+    """
     for name, value in values.items():
+        inner = "" if len(values) == 1 and not prefix else f"{prefix}{name}."
         if isinstance(value, dict):
-            inner = "" if len(values) == 1 and not prefix else f"{prefix}{name}."
             yield from _flat(value, inner)
-        elif isinstance(value, list | str):
+        elif isinstance(value, list):
+            yield from _flat(_named([one for one in value if isinstance(one, dict)]), inner)
+        elif isinstance(value, str):
             continue
         else:
             yield f"{prefix}{name}", np.asarray(value)
+
+
+def _named(structures: list[dict[str, Any]]) -> dict[str, Any]:
+    """Structures of a list by their own names, or by their numbers."""
+    names = [next((one[key] for key in _NAMES if isinstance(one.get(key), str)), "") for one in structures]
+    told = all(names) and len(set(names)) == len(names)
+    return dict(zip(names if told else map(str, range(1, len(names) + 1)), structures, strict=True))
