@@ -153,6 +153,13 @@ def _text_files() -> dict[str, Foreign]:
         "pandas, without a time": Foreign(
             "a.csv", pd.DataFrame(COLUMNS).drop(columns="time_s").to_csv().encode(), asks="no column is a time"),
         "no header": Foreign("a.csv", _text(COLUMNS, header=None), asks="no column is a position"),
+        "no header, an uneven clock": Foreign("a.csv", _text(
+            {"duty": CURRENT_A, "t": TIME_S + 0.02 * (np.arange(ROWS) % 9 == 8).cumsum(), "q": POSITION_RAD},
+            header=None), asks=r"or which it is, --take 'column 2=time\[s\]', which never falls"),
+        "no header, many columns": Foreign("a.csv", _text({f"{n}": CURRENT_A for n in range(25)}, header=None),
+                                           asks="'column 20' and 5 more\\)"),
+        "every line in quotes": Foreign("a.csv", "".join(f'"{line}"\n' for line in PLAIN.decode().split()).encode(),
+                                        asks="line 1: the whole line stands in double quotes"),
         "no header, said": Foreign("a.csv", _text(COLUMNS, header=None), known=Known(read_said(
             ["column 1=time[s]", "column 2=position[rad]", "column 3=current[A]"]))),
         "empty": Foreign("a.csv", b"", asks="wanted a header"),

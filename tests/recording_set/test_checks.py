@@ -25,7 +25,7 @@ ASKED = {
     "no position": ({"position_rad": None}, "no trial has position_rad"),
     "a linear joint": ({"position_rad": None, "position_m": POSITION_RAD}, 'say joint = "linear" in the rig'),
     "no effort": ({"current_a": None}, "has no effort channel"),
-    "speed of another unit": ({"velocity_rad_s": np.degrees(VELOCITY_RAD_S)}, "scale = 0.0174 for velocity_rad_s, 57.3 for"),
+    "speed of another unit": ({"velocity_rad_s": np.degrees(VELOCITY_RAD_S)}, "0.0174 for velocity_rad_s, 57.3 for"),
 }  # fmt: skip
 
 

@@ -1,5 +1,6 @@
 """A table in memory, of whatever format: named columns of one length."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,6 +16,7 @@ MOST_UNPACKED = 2 * 2**30  # bytes: a small file of these formats can hold any n
 MOST_COLUMNS = 64  # of an array of two dimensions
 LONGEST_NAME = 100  # characters; MATLAB's own have at most 63, and a structure's are put before them
 SHOWN_OF_NAME = 20
+MOST_LISTED = 20
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,7 @@ def table_of(place: str, arrays: Arrays) -> ColumnTable:
     length = max(lengths, key=lambda n: (lengths[n], n), default=0)
     kept = {name: one for name, one in columns.items() if len(one) == length}
     if length < FEWEST_ROWS or not kept:
-        raise RecordingSetError(place, f"holds no columns of at least {FEWEST_ROWS} numbers; it has {_listed(arrays)}")
+        raise RecordingSetError(place, f"holds no columns of at least {FEWEST_ROWS} numbers; it has {listed(arrays)}")
     left = [name for name in columns if name not in kept]
     told = f"{len(kept)} columns of {length} rows" + (f"; of other lengths: {', '.join(left)}" if left else "")
     return ColumnTable(place, kept, rate_hz, told)
@@ -101,8 +103,11 @@ def _check_names(place: str, arrays: Arrays) -> None:
             )
 
 
-def _listed(arrays: Arrays) -> str:
-    return ", ".join(list(arrays)[:20]) or "nothing"
+def listed(names: Iterable[str]) -> str:
+    """Names in a sentence: the first ones, and how many more there are."""
+    quoted = [f"'{name}'" for name in names]
+    more = f" and {len(quoted) - MOST_LISTED} more" if len(quoted) > MOST_LISTED else ""
+    return (", ".join(quoted[:MOST_LISTED]) or "nothing") + more
 
 
 def _columns(name: str, values: NDArray[np.generic]) -> Columns:

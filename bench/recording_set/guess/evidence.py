@@ -95,10 +95,13 @@ def period_of(time_s: FloatArray, position: FloatArray) -> float | None:
     return near[0] if near else found
 
 
+def rises(values: FloatArray) -> bool:
+    """Whether a column never falls, as a time does; what counts 1, 2, 3 numbers the rows."""
+    steps = np.diff(values[np.isfinite(values)])
+    return bool(len(steps) >= FEWEST and (steps >= 0.0).all() and (steps > 0.0).any() and (steps != 1.0).any())
+
+
 def is_clock(values: FloatArray) -> bool:
-    """Whether a column rises evenly, as a time does and nothing else of a joint; what counts 1, 2, 3 numbers rows."""
-    known = values[np.isfinite(values)]
-    steps = np.diff(known)
-    if len(known) < FEWEST or not (steps >= 0.0).all() or not (steps > 0.0).any() or (steps == 1.0).all():
-        return False
-    return float(np.std(steps)) < 0.2 * float(np.mean(steps))
+    """Whether a column rises evenly, as a time does and nothing else of a joint."""
+    steps = np.diff(values[np.isfinite(values)])
+    return rises(values) and float(np.std(steps)) < 0.2 * float(np.mean(steps))

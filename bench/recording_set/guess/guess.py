@@ -10,9 +10,10 @@ import numpy as np
 import tomli_w
 
 from bench.config.rig import Rig
-from bench.recording_set.formats.column_table import Columns
+from bench.recording_set.formats.column_table import Columns, listed
 from bench.recording_set.guess.assign import Assigned, Said, assign
-from bench.recording_set.guess.names import UNITS_OF
+from bench.recording_set.guess.evidence import clock_units, rises
+from bench.recording_set.guess.names import UNITS_OF, is_named_by
 from bench.recording_set.guess.units_told import Units
 from bench.recording_set.mapping import Column, Mapping
 from compensator.lab.recordings.recording import CHANNELS, FloatArray
@@ -149,7 +150,7 @@ def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
         notes.append("no column is a position: it is the integral of the speed, from 0 in each trial")
     taken = tuple(_taken(name, columns, units, assigned) for name in assigned.names)
     unsigned = magnitude_questions([sheet.columns for sheet in sheets], assigned)
-    missing = _missing(assigned, known, rate_hz)
+    missing = _missing(sheets, assigned, known, rate_hz)
     questions = (*assigned.questions, *units.questions, *unsigned, *missing, *_other_columns(sheets, assigned))
     joint: Literal["rotary", "linear"] = "linear" if units.joint == "linear" else "rotary"
     files, places = tuple(sheet.file for sheet in sheets), tuple(sheet.place for sheet in sheets)
@@ -161,7 +162,7 @@ def _other_columns(sheets: Sequence[Sheet], assigned: Assigned) -> list[str]:
     groups = (("time",), ("position", "velocity"), EFFORTS)
     wanted = [[name for name in group if name in assigned.columns] for group in groups]
     return [
-        f"{sheet.place} has other columns than the others ({', '.join(list(sheet.columns)[:20])}): files whose columns "
+        f"{sheet.place} has other columns than the others ({listed(sheet.columns)}): files whose columns "
         "differ are guessed one by one, each with a --mapping of its own"
         for sheet in sheets
         if any(group and not any(_has(sheet, name, assigned.columns[name]) for name in group) for group in wanted)
@@ -174,15 +175,25 @@ def _has(sheet: Sheet, quantity: str, names: tuple[str, ...]) -> bool:
     return bool(own) or all(name in sheet.columns for name in names)
 
 
-def _missing(assigned: Assigned, known: Known, rate_hz: float | None) -> list[str]:
+def _rising(sheets: Sequence[Sheet], assigned: Assigned) -> str:
+    """The option that takes the first column that never falls, and that no word names, for the time."""
+    for name in assigned.names:
+        reading, found = assigned.readings[name], [one.columns[name] for one in sheets if name in one.columns]
+        numbers = [np.asarray(one) for one in found if not isinstance(one, list)]
+        if not is_named_by(reading.words, reading.quantity) and numbers and all(map(rises, numbers)):
+            return f"--take '{name}=time[{(clock_units(numbers[0]) or ['s'])[0]}]', which never falls"
+    return "--take 'NAME=time[ms]'"
+
+
+def _missing(sheets: Sequence[Sheet], assigned: Assigned, known: Known, rate_hz: float | None) -> list[str]:
     """What every study needs."""
-    there = ", ".join(f"'{name}'" for name in assigned.names[:20])
+    there = listed(assigned.names)
     efforts = set(EFFORTS) & set(assigned.columns)
     found = []
     if "time" not in assigned.columns and rate_hz is None:
         found.append(
             f"no column is a time (there are {there}): say how many samples a second, --rate-hz 1000, or which it is, "
-            "--take 'NAME=time[ms]'"
+            + _rising(sheets, assigned)
         )
     if not {"position", "velocity"} & set(assigned.columns):
         found.append(f"no column is a position or a speed (there are {there}): say --take 'NAME=position[deg]'")

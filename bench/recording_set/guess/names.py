@@ -112,7 +112,7 @@ def read_name(name: str) -> Reading:
     words = _present(_words(base), told)
     quantity, unfit = _quantity(words, told), ""
     if unit is not None and quantity and unit.si not in UNITS_OF.get(quantity, (unit.si,)):
-        if _is_named_by(words, quantity) or unit.si == "1":
+        if is_named_by(words, quantity) or unit.si == "1":
             # "theta_m" is no length; what "torque [%]" is has to be asked
             unfit, unit = unit.name if clear else "", None
         else:
@@ -173,7 +173,8 @@ def _compound(words: frozenset[str]) -> str:
     return ""
 
 
-def _is_named_by(words: frozenset[str], quantity: str) -> bool:
+def is_named_by(words: frozenset[str], quantity: str) -> bool:
+    """Whether a word names a quantity, and not only a letter or two."""
     known = next((known for name, known in WORDS if name == quantity), frozenset())
     return any(len(word) > 2 and word in known for word in words)
 

@@ -219,7 +219,7 @@ class Units:
                     return unit
         values = self._numbers("velocity")
         if self._place == "rad" and values is not None and float(np.nanmax(np.abs(values))) > LARGE_RATE:
-            self._ask("velocity", f"goes from {_range(values)}, without a unit", ("rpm", "deg/s", "rad/s"))
+            self._ask("velocity", f"lies between {_range(values)}, without a unit", ("rpm", "deg/s", "rad/s"))
         return self._plain("velocity", f"{self._place}/s")
 
     def _check_rate(self, rate: float | None, firm: bool) -> None:

@@ -10,7 +10,7 @@ from itertools import islice
 
 from bench.recording_set.container import Container, Files
 from bench.recording_set.errors import RecordingSetError
-from bench.recording_set.text.dialect import BLANKS, Dialect, dialect_of, dialect_of_text, is_comment
+from bench.recording_set.text.dialect import BLANKS, DELIMITERS, Dialect, dialect_of, dialect_of_text, is_comment
 from bench.recording_set.text.encoding import UTF_8, encoding_of, name_of
 
 CHUNK_CHARACTERS = 2**20
@@ -130,7 +130,7 @@ class Table:
             self.header = list(self.dialect.header) or self._plain_header(text)
         self.header_line = max(self.dialect.header_line, 1)
         self.rate_hz = self.dialect.rate_hz
-        self._check_header(numeric)
+        self._check_header(numeric, lines[0] if lines else "")
         self.told = self._told(delimiter, decimal, encoding)
 
     def _dialect(self, lines: list[str], delimiter: str | None, decimal: str | None, numeric: bool) -> Dialect:
@@ -221,9 +221,12 @@ class Table:
                     return self.error(f"{found}; save the file as CSV UTF-8", number)
         return self.error("is not UTF-8; save the file as CSV UTF-8")
 
-    def _check_header(self, numeric: bool) -> None:
+    def _check_header(self, numeric: bool, first: str) -> None:
         if not any(self.header):
             raise self.error("the file or its first line is empty; wanted a header of column names")
+        if len(self.header) == 1 and first.startswith('"') and any(sign in self.header[0] for sign in DELIMITERS[:4]):
+            message = "the whole line stands in double quotes, as one cell; take these quotes away, from every line"
+            raise self.error(message, self.header_line)
         if numeric:  # pandas leaves the index of a table without a name
             self.header = [name or f"column {number}" for number, name in enumerate(self.header, start=1)]
         seen: set[str] = set()
