@@ -113,15 +113,14 @@ def conditions(values: Mapping[str, object]) -> str:
     return ", ".join(f"{key}={text(value)}" for key, value in values.items())
 
 
-def refuse_taken(*paths: Path) -> None:
-    """Check all places before anything is written.
+def refuse_taken(path: Path, mend: str = "name another file") -> None:
+    """Check a place before anything is written.
 
     Raises:
-        FileError: a place is taken.
+        FileError: it is taken; the message says how to mend that.
     """
-    for path in paths:
-        if path.exists():
-            raise FileError(f"{path}: is there already; name another file, or remove it")
+    if path.exists():
+        raise FileError(f"{path}: is there already; {mend}, or remove it")
 
 
 def write_whole(path: Path, chunks: Iterable[bytes]) -> None:

@@ -25,8 +25,8 @@ def test_a_guess_is_shown_written_and_can_be_imported(command, tmp_path):
 @pytest.mark.parametrize(
     ("words", "taken", "said"),
     [
-        ([], "rig.toml", "rig.toml: is there already"),
-        ([], "mapping.toml", "mapping.toml: is there already"),
+        ([], "rig.toml", "rig.toml: is there already; use it, --rig rig.toml, or remove it"),
+        ([], "mapping.toml", "mapping.toml: is there already; name another file with --mapping, or remove it"),
         (["--mapping", "rig.toml"], "", "the rig is written there; name another file with --mapping"),
     ],
 )
@@ -139,7 +139,9 @@ def test_the_same_recordings_are_told_when_they_come_in_again(command, tmp_path)
     (tmp_path / "log.csv").write_bytes(FILES["degrees and rpm"].data)
     assert command("import", "--guess", "log.csv").exit_code == 0
     words = ["import", "log.csv", "--mapping", "mapping.toml", "--rig", "rig.toml"]
-    assert command(*words).stderr == ""
+    first = command(*words)
+    assert first.stderr == ""
+    assert "imported as experiment 1: 1 trial, 400 rows" in first.stdout
     mapping = tmp_path / "mapping.toml"
     mapping.write_text(mapping.read_text().replace('unit = "rpm"', 'unit = "rpm"\nscale = 1.01'))
     assert "experiment 1 has the same recordings already" in command(*words, "--json").stderr

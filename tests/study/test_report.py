@@ -6,8 +6,9 @@ import pytest
 
 from bench.config.configuration import default_configuration
 from bench.study.changes import add_effect
-from bench.study.create import create_study
+from bench.study.create import create_study, describe
 from bench.study.ladder import ladder
+from bench.study.report.model_sections import measured_section
 from bench.study.report.report import report, report_html
 from tests.lab.synthetic import plans
 from tests.study.conftest import imported
@@ -42,6 +43,9 @@ def test_everything_that_a_lab_files_is_in_it(store, number, sections):
         "Where it comes from",
     ]
     assert "12 trials, of which 6 are held out" in sections["What was measured"].sentences[0]
+    study = describe(store, number)
+    one = measured_section(study.model_copy(update={"trials": study.trials[:1]}), store)
+    assert one.sentences[0].startswith("1 trial, ")
     (table,) = sections["The ladder"].tables
     rungs = ladder(store, number).rungs
     assert [row[3] for row in table.rows] == [f"{rung.held_out:.2%}" for rung in rungs]

@@ -58,7 +58,9 @@ def write_guess(guess: "Guess", rig: "Rig | None", mapping_file: Path, rig_file:
 
     if rig is not None and mapping_file == rig_file:
         raise FileError(f"{mapping_file}: the rig is written there; name another file with --mapping")
-    refuse_taken(mapping_file, *(() if rig is None else (rig_file,)))
+    refuse_taken(mapping_file, "name another file with --mapping")
+    if rig is not None:
+        refuse_taken(rig_file, f"use it, --rig {rig_file}")
     head = ("written by friction-bench import --guess; read it before you use it", *guess.notes)
     write_whole(mapping_file, [mapping_text(guess.mapping, head, guess.files).encode()])
     say(f"written: {mapping_file}")

@@ -63,9 +63,15 @@ def import_(
             "folder of them.",
         ),
     ],
-    rig: Annotated[Path | None, typer.Option(help="rig.toml, where the set has none or another is wanted.")] = None,
+    rig: Annotated[
+        Path | None,
+        typer.Option(
+            help="rig.toml, where the set has none or another is wanted. --guess reads it, and without it writes one."
+        ),
+    ] = None,
     mapping: Annotated[
-        Path | None, typer.Option(help="mapping.toml, for files whose columns have other names.")
+        Path | None,
+        typer.Option(help="mapping.toml, for files whose columns have other names. --guess writes it."),
     ] = None,
     name: Annotated[str | None, typer.Option(help="Name of the import; without it, that of the set.")] = None,
     guess: Annotated[bool, typer.Option("--guess", help=_GUESS)] = False,
@@ -113,7 +119,7 @@ def import_(
         return
     for note in recording_set.notes:
         say(note)
-    say(f"imported as experiment {experiment_id}: {trials} trials, {rows} rows")
+    say(f"imported as experiment {experiment_id}: {trials} trial{'s' * (trials != 1)}, {rows} rows")
     called = shlex.quote(name or recording_set.name)
     say(session_of(context).in_full(f"next: friction-bench study new {called} --experiment {experiment_id}"))
 

@@ -66,7 +66,7 @@ def measured_section(study: Study, store: Store) -> Section:
     return Section(
         "What was measured",
         [
-            f"{len(rows)} trials, {judged}. Predicted is {study.effort.name} "
+            f"{len(rows)} trial{'s' * (len(rows) != 1)}, {judged}. Predicted is {study.effort.name} "
             f"[{study.effort.unit}]; effort and motion are filtered alike at {study.cutoff_hz:.3g} Hz; "
             f"rows that count: {study.rows}."
         ],
