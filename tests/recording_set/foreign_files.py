@@ -156,6 +156,8 @@ def _text_files() -> dict[str, Foreign]:
         "no header, an uneven clock": Foreign("a.csv", _text(
             {"duty": CURRENT_A, "t": TIME_S + 0.02 * (np.arange(ROWS) % 9 == 8).cumsum(), "q": POSITION_RAD},
             header=None), asks=r"or which it is, --take 'column 2=time\[s\]', which never falls"),
+        "no header, set points that rise": Foreign("a.csv", _text(
+            {"duty": np.floor(TIME_S), "q": POSITION_RAD}, header=None), asks="or which it is, --take 'NAME=time"),
         "no header, many columns": Foreign("a.csv", _text({f"{n}": CURRENT_A for n in range(25)}, header=None),
                                            asks="'column 20' and 5 more\\)"),
         "every line in quotes": Foreign("a.csv", "".join(f'"{line}"\n' for line in PLAIN.decode().split()).encode(),
@@ -215,11 +217,15 @@ def _units() -> dict[str, Foreign]:
             truth={**TRUTH, "velocity_rad_s": 2.3 * VELOCITY_RAD_S}),
         "speed of nothing known, which no import takes": Foreign(
             "a.csv", motor_side(3.3), known=Known(read_said(["Winkel [deg]=position[deg]"])),
-            asks=r"no import takes: leave one out, --take 'Drehzahl .U/min.=ignore'"),
+            asks=r"no import takes: say --take 'Drehzahl .U/min.=ignore'"),
         "counts of another turn": Foreign("a.csv", _text({
             "t": TIME_S, "enc": COUNTS, "vel [rad/s]": VELOCITY_RAD_S, "i": CURRENT_A}),
             known=Known({}, counts_per_turn=1000.0),
-            asks=r"'enc' in counts changes 16.4 times as fast as 'vel .rad/s.'.*--take 'vel .rad/s.=ignore'"),
+            asks=r"'enc' in counts changes 16.4 times as fast as 'vel .*--counts-per-turn 163.. or --take 'vel "),
+        "counts of many turns": Foreign("a.csv", _text({
+            "t": TIME_S, "enc": COUNTS, "vel [rad/s]": VELOCITY_RAD_S, "i": CURRENT_A}),
+            known=Known(read_said(["enc=position[counts]"]), counts_per_turn=133 * 16384.0),
+            asks=r"no import takes: say --counts-per-turn 163.. or --take 'vel .rad/s.=ignore'"),
         "speed told by counts": Foreign("a.csv", _text({
             "t": TIME_S, "enc": COUNTS, "speed": VELOCITY_RAD_S * 180.0 / np.pi, "i": CURRENT_A}),
             known=Known({}, counts_per_turn=16384.0), truth=both, digits=3),

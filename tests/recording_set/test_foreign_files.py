@@ -119,6 +119,14 @@ def test_what_an_import_refuses_is_asked_by_the_guess(tmp_path: Path) -> None:
     np.savetxt(tmp_path / "log.csv", table, "%.6f", ",", header="t,pos,vel,i", comments="")
     (question,) = guess_of([tmp_path / "log.csv"], None, Known({}))[0].questions
     assert re.search("an import refuses this: .*position_rad and velocity_rad_s have opposite signs", question)
+    folder = tmp_path / "set"
+    folder.mkdir()
+    np.savetxt(folder / "log.csv", table[:, [0, 1, 3]], "%.6f", ",", header="t,pos,torque", comments="")
+    (folder / "trials.csv").write_text("file,load_kg\nlog.csv,300\n")
+    rig = Rig(name="arm", arm=Arm(length_m=0.3))
+    with pytest.raises(RecordingSetError, match="load_kg is 300 kg"):
+        read_unknown([folder], rig, Known({}))
+    assert guess_of([folder], rig, Known({}))[0].questions == ()  # the mapping that is written then confirms it
 
 
 def test_numbers_beyond_any_clock_are_no_time(tmp_path: Path) -> None:

@@ -230,20 +230,24 @@ class Units:
         ratio = abs(rate) * self._factor(position) / self._factor(velocity)
         if np.isnan(ratio) or 1.0 / AGREE < ratio < AGREE:
             return
+        # beside counts a ratio may as well be one of another count: only a rig's gear tells
+        firm = firm and (self._gear_ratio is not None or not position.counts)
         gear = gear_behind(1.0 / ratio, self._gear_ratio) if firm else None
         near = unit_by_slope(rate / velocity.factor, _units_of(self._place))
         sure = self._is_sure("position") or (gear is not None and gear == self._gear_ratio)
         name, speed = self._name("position"), self._name("velocity")
+        counts = f"--counts-per-turn {ratio * self._counts:.5g} or " if position.counts and self._counts else ""
+        without = f"{counts}--take '{speed}=ignore', which leaves the speed out"
         found = f"in {position.name} changes {ratio:.3g} times as fast as '{speed}' in {velocity.name}"
         if gear is not None and (sure or near is None):
             self._take_as_motor(gear, f"'{name}' {found}")
         elif not (sure or self._is_sure("velocity")):
             units = [near.name, position.name] if near else [position.name, "deg", "rad"]
-            self._ask("position", found, units, f"--take '{speed}=ignore', which leaves the speed out")
+            self._ask("position", found, units, without)
         elif 1.0 / FACTOR < ratio < FACTOR:
             self.notes.append(f"'{name}' {found}: taken as said; --take '{speed}=ignore' leaves the speed out")
         else:
-            self.questions.append(f"'{name}' {found}, which no import takes: leave one out, --take '{speed}=ignore'")
+            self.questions.append(f"'{name}' {found}, which no import takes: say {without}")
 
     def _take_as_motor(self, gear: float, found: str) -> None:
         """The speed as one of the motor."""

@@ -76,7 +76,7 @@ def _trials_columns(container: Container) -> dict[str, str | Renamed]:
 def guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Guess, Rig, tuple[str, ...]]:
     """What the columns of files may be, the rig that is assumed, and how the files were read.
 
-    What the import of this guess refuses is a question.
+    What the import of this guess refuses in the columns is a question. A load is confirmed in the mapping instead.
 
     Raises:
         RecordingSetError: a file that cannot be read, or a column that is not there.
@@ -84,7 +84,9 @@ def guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Gues
     guess, rig, notes = _guess_of(paths, rig, known)
     if not guess.questions:
         try:
-            read_recording_set(paths, guess.mapping, rig)
+            read_recording_set(
+                paths, guess.mapping, rig.model_copy(update={"horizontal": True})
+            )  # there no load counts
         except RecordingSetError as error:
             guess = replace(guess, questions=(f"an import refuses this: {error}",))
     return guess, rig, notes
