@@ -304,6 +304,8 @@ def _names() -> dict[str, Foreign]:
         "current is present, by the unit": Foreign("a.csv", _text({
             "time": TIME_S, "Current (deg)": DEGREES, "Current (A)": CURRENT_A})),
         "current of an axis": Foreign("a.csv", _text({**motion, "current_q": CURRENT_A})),
+        "current of the supply": Foreign("a.csv", _text({
+            **motion, "bus current [A]": 0.3 * CURRENT_A, "current [A]": CURRENT_A})),
         "a torque and its current, by the unit": Foreign("a.csv", _text({
             **motion, "torque current [A]": CURRENT_A})),
         "measured torque alone": Foreign("a.csv", _text({**motion, "torque_measured": CURRENT_A}), truth=torque),

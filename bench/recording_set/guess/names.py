@@ -78,7 +78,7 @@ MEASURED = _listed("actual act measured meas ist istwert feedback fb present rea
 DERIVED = _listed("filtered filt lp smooth estimate estimated est sim simulated model hat pred predicted")
 SENSOR = _listed("sensor cell loadcell transducer messwelle external extern output load brake bremse")
 DRIVE = _listed("motor drive servo actuator antrieb")
-OTHER_AXIS = _listed("d id ia ib ic phase a b c")  # of a vector drive: not what makes torque
+OTHER_AXIS = _listed("d id ia ib ic phase a b c")  # of a vector drive: not what makes torque, as that of the supply
 JOINT_SIDE = _listed("joint output link arm load abtrieb gelenk")
 
 
@@ -193,7 +193,7 @@ def _score(words: frozenset[str], unit: Unit | None, quantity: str) -> float:
     score = 2.0 * (unit is not None) + 2.0 * bool(words & MEASURED) - 1.0 * bool(words & DERIVED)
     score += 0.5 * bool(words & JOINT_SIDE)
     if quantity == "current":
-        score -= 5.0 * bool(words & OTHER_AXIS)
+        score -= 5.0 * bool(words & (OTHER_AXIS | dict(WORDS)["supply"]))
     if quantity == "torque" and words & TARGET:
         score -= 3.0
     return score
