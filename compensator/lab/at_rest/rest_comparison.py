@@ -160,6 +160,11 @@ def at_rest_in_words(found: RestComparison, unit: str) -> str:
             else "it may rise at speeds below the slowest that slid: record breakaway ramps at several rates and rests"
         )
         return f"{told}: static friction is more than this model has; {todo}."
+    if not found.by_starts:
+        return (
+            f"{told}: static friction may be more than sliding shows, or gravity or an offset is wrong at rest; record "
+            "breakaway ramps, which tell."
+        )
     return (
         f"{told}: that is no friction. Gravity, an offset or the constant that makes efforts of currents is wrong at "
         "rest, or the joint leans against a stop; hold it there, come from either side, and compare with the power off."

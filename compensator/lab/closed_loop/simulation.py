@@ -85,7 +85,8 @@ def moved_recording(dataset: Dataset, trial: Trial, position: FloatArray) -> Rec
 
 
 def _only(dataset: Dataset, trial: Trial) -> Dataset:
-    return replace(dataset, trials=(trial,), scales=dataset.scales_for_others, cache={}, unfiltered={})
+    scales = dataset.scales_for_others
+    return replace(dataset, trials=(trial,), scales=scales, uncorrected=None, cache={}, unfiltered={})
 
 
 def _drive(fit: Fit, trial: Trial, told_law: ControlLaw | None) -> tuple[Drive, ControlLaw]:

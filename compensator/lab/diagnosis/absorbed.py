@@ -20,7 +20,7 @@ def absorbed(fit: Fit, left_out: Collection[str]) -> list[Note]:
         left_out: effects that cannot be judged.
     """
     offset = next((one for one in estimates(fit) if one.effect == OFFSET), None)
-    friction = fit.dry_friction
+    friction = fit.dry_friction if any(one.effect.name == "coulomb" and one.kept[0] for one in fit.terms) else 0.0
     if offset is None or friction <= 0.0 or not (offset.low > 0.0 or offset.high < 0.0):
         return []
     share = abs(offset.value) / friction

@@ -41,7 +41,14 @@ def data_problems(fit: Fit) -> list[str]:
 
 def lesser_problems(fit: Fit) -> list[str]:
     """Those with which effects can be ranked: what loads and warmth do together, and trials that are odd or idle."""
-    return [*_ordered_conditions(fit), *_odd_trials(fit), *_few_usable(fit), *_unused(fit), *_same_samples(fit)]
+    return [
+        *_half_told_loads(fit),
+        *_ordered_conditions(fit),
+        *_odd_trials(fit),
+        *_few_usable(fit),
+        *_unused(fit),
+        *_same_samples(fit),
+    ]
 
 
 def _mirrored_trials(fit: Fit) -> list[str]:
@@ -108,6 +115,25 @@ def _load_units(fit: Fit) -> list[str]:
         f"the loads seem to weigh {seems}: check the units of {channels} (mA for A makes 1000), of load_kg (g for kg "
         "makes 0.001), of arm_m and of position (degrees), and which trial had which load"
     ]
+
+
+def _half_told_loads(fit: Fit) -> list[str]:
+    """Loads that count as none, since a trial does not tell its own, or nobody tells where they hang."""
+    motions = [(trial.motion, trial.signals.recording.name) for trial in fit.dataset.trials]
+    loaded = [(motion, name) for motion, name in motions if motion.load_kg != 0.0]
+    silent = [f"'{name}'" for motion, name in motions if "load_kg" not in motion.conditions]
+    found = []
+    if loaded and silent:
+        found.append(
+            f"{some_of(silent)} do not tell load_kg, others do: they count as without load; tell it of each trial"
+        )
+    armless = [f"'{name}'" for motion, name in loaded if motion.facts.joint == "rotary" and motion.arm_m == 0.0]
+    if armless:
+        found.append(
+            f"load_kg of {some_of(armless)} is told, and not where it hangs: its weight and inertia count as none; put "
+            "arm.length_m [m] into the rig, or arm_m into the conditions of the trials"
+        )
+    return found
 
 
 def _ordered_conditions(fit: Fit) -> list[str]:

@@ -9,6 +9,7 @@ from math import nan
 
 from compensator.lab import progress
 from compensator.lab.at_rest.rest_comparison import RestComparison, at_rest_in_words, compare_at_rest
+from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.absorbed import absorbed
 from compensator.lab.diagnosis.alien_effort import alien_effort
 from compensator.lab.diagnosis.answer import Answer
@@ -74,8 +75,7 @@ def diagnose(fit: Fit) -> Diagnosis:
     return Diagnosis(
         verdict=first.verdict,
         sentence=(f"{at_rest[0].text} In motion: " if sticks else "")
-        + first.sentence
-        + ("" if too_short else _nearest(first, ranked))
+        + (first.sentence if too_short else with_nearest(first, ranked))
         + "".join(f" {note.text}" for note in hiding if first.verdict == "nothing"),
         p_value=first.p_value,
         classes=_classes(ranked),
@@ -103,10 +103,13 @@ def best_named(fit: Fit, show_in: MotionRows) -> str | None:
     return screening.evidence[0].block.name if screening.evidence else None
 
 
-def _nearest(first: Answer, ranked: list[Candidate]) -> str:
-    """What comes nearest, as a further sentence, where nothing is confirmed; empty where nothing comes near."""
+def with_nearest(first: Answer, ranked: list[Candidate]) -> str:
+    """An answer in words; where nothing is confirmed, with what comes nearest: then something may be missing."""
     nearest = nearest_one(ranked) if first.verdict == "nothing" else None
-    return "" if nearest is None else f" {nearest_in_words(nearest)}"
+    if nearest is None:
+        return first.sentence
+    plain = not first.remains and first.p_value > SIGNIFICANT
+    return f"{'No effect is confirmed.' if plain else first.sentence} {nearest_in_words(nearest)}"
 
 
 def _data_problem(fit: Fit, problem: str) -> Diagnosis:

@@ -98,7 +98,7 @@ def judged(fit: Fit) -> FourFamilies:
     pipeline = [block for block in gathered.named if effect_named(block.name).pipeline]
     if not physical:
         raise UnusableDataError(
-            "no effect of the catalogue can be judged on these trials; record " + "; ".join(gathered.left_out.values())
+            "no effect of the catalogue can be judged on these trials: " + "; ".join(gathered.left_out.values())
         )
     progress.enter(SCREENING)
     generic = gathered.screened(gathered.curves.blocks)

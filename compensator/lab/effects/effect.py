@@ -192,8 +192,8 @@ class Motion:
 
     @property
     def load_inertia_kg_m2(self) -> float:
-        """Inertia of the tip load about the axis [kg m^2], as a point mass."""
-        return self.load_kg * self.arm_m**2
+        """Inertia of the tip load about the axis [kg m^2], as a point mass; of a linear joint its mass [kg]."""
+        return self.load_kg if self.facts.joint == "linear" else self.load_kg * self.arm_m**2
 
 
 @dataclass(frozen=True, slots=True)

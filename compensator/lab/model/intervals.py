@@ -41,14 +41,13 @@ def estimates(fit: Fit) -> list[ParameterEstimate]:
     unit = fit.dataset.effort_definition.unit
     found, index = [], 0
     for term in fit.terms:
-        ranges = term.effect.ranges_in(fit.dataset.effort_definition.quantity)
-        for position, (parameter, (lowest, highest)) in enumerate(zip(term.effect.parameters, ranges, strict=True)):
+        for position, parameter in enumerate(term.effect.parameters):
             if not excited[index]:
                 index += 1
                 continue  # a term for loads, say, where none is hung
             value = float(term.coefficients[position])
             kept, bound = bool(term.kept[position]), bool(term.at_bound[position])
-            width = half[index]
+            width, lowest, highest = half[index], float(fit.bounds.low[index]), float(fit.bounds.high[index])
             found.append(
                 ParameterEstimate(
                     effect=term.effect.name,

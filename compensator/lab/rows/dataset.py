@@ -465,13 +465,21 @@ class Dataset:
             if not all(channel in trial.signals.recording.channels for trial in self.trials):
                 raise NotApplicableError(f"{effect.name} needs channel {channel} in every trial; record it")
         if effect.varies_with and not self._varies(effect.varies_with):
-            lacks = f"no trial tells it; put it into trials.csv where it was known, or record {effect.excited_by}"
-            if effect.varies_with == "temperature_c" or self._is_told(effect.varies_with):
-                lacks = f"it does not; record {effect.excited_by}"
+            lacks = self._lacking(effect)
             raise NotApplicableError(f"{effect.name} needs {effect.varies_with} to differ over the data, and {lacks}")
         if effect.offered_by and effect.name not in self._tried_out:
             effect.try_out([trial.motion for trial in self.trials])
             self._tried_out.add(effect.name)
+
+    def _lacking(self, effect: Effect) -> str:
+        """Why what an effect varies with does not differ, and what to do."""
+        if effect.varies_with == "temperature_c":
+            empty = [t.signals.recording.name for t in self.trials if not np.isfinite(t.motion.temperature_c).all()]
+            if empty:
+                return f"it is empty, in part or all the time, in {', '.join(empty[:3])}; leave such trials out"
+        elif not self._is_told(effect.varies_with):
+            return f"no trial tells it; put it into trials.csv where it was known, or record {effect.excited_by}"
+        return f"it does not; record {effect.excited_by}"
 
     @cached_property
     def _tried_out(self) -> set[str]:

@@ -53,6 +53,9 @@ def test_what_a_poor_model_says_of_rest_is_not_called_chance():
     )
     assert said(0.9, 0.6, by_starts=False).endswith("record breakaway ramps.")
     assert "no more than chance" in said(0.02, 0.01)
+    beyond = RestComparison(40, 2, Side(0.5, 0.1, 1e-3, "one", 2.0), Side(0.0, 0.0, 1.0, "one", 2.0), 0.05, 0.5, False)
+    assert "static friction may be more than sliding shows" in at_rest_in_words(beyond, "A")
+    assert "that is no friction" in at_rest_in_words(replace(beyond, by_starts=True), "A")
     assert said(0.0, 0.0) == "At rest: of 40 stretches of 0.1 s, all lie within what friction holds."
 
 

@@ -113,3 +113,11 @@ def test_a_trial_of_little_effort_is_moved_as_it_was_fitted(fit, monkeypatch):
     simulate(replace(fit, dataset=predicted), fit.dataset.trials[0])
     assert set(asked) == {predicted.trials[0].motion.largest_effort}
     assert asked[0] > 0.0
+
+
+def test_a_model_that_corrects_the_position_moves_each_of_several_trials():
+    made = [replace(one, name=f"{one.name}-{number}") for number, one in enumerate(recordings(JOINT) * 2)]
+    fit = fitted(made, MODEL)
+    corrected = replace(fit, dataset=replace(fit.dataset, uncorrected=fit.dataset))
+    trial = fit.dataset.trials[1]
+    np.testing.assert_allclose(simulate(corrected, trial).position, simulate(fit, trial).position)

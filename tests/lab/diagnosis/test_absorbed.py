@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compensator.lab.diagnosis.absorbed import LEAST_SHARE
+from compensator.lab.diagnosis.absorbed import LEAST_SHARE, absorbed
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
@@ -38,3 +38,9 @@ def test_beside_a_name_it_is_a_note_with_its_numbers():
     assert (note.values["effect"], note.values["unit"]) == ("coulomb_asymmetry", "N m")
     assert note.values["share"] > LEAST_SHARE
     assert note.text not in found.sentence
+
+
+def test_without_coulomb_friction_there_is_nothing_that_the_offset_is_a_share_of():
+    dataset = make_dataset(recordings(Joint(offset=0.1), seed=3), FACTS, Processing(cutoff_hz=8.0))
+    fit = fit_model(dataset, [name for name in default_effects(FACTS) if name != "coulomb"])
+    assert absorbed(fit, ["coulomb_asymmetry"]) == []

@@ -158,6 +158,32 @@ def test_a_trial_without_any_row_that_can_be_used_is_told_and_left_out():
     assert any("record motion, with the duty below its limit" in problem for problem in found.data_problems)
 
 
+def test_loads_that_count_as_none_are_told():
+    half = diagnosed(changed(lambda recording: recording.conditions.pop("load_kg"), slice(0, 1)))
+    assert any("'load-0g-0-1' do not tell load_kg, others do" in problem for problem in half.data_problems)
+    armless = diagnosed(changed(lambda recording: recording.conditions.pop("arm_m")), Facts())
+    assert any("is told, and not where it hangs" in problem for problem in armless.data_problems)
+
+
+def test_a_temperature_that_is_empty_in_part_is_told_with_the_trial():
+    made = changed(cold, slice(1, 2))
+    found = diagnosed(made)
+    words = f"needs temperature_c to differ over the data, and it is empty, in part or all the time, in {made[1].name}"
+    assert words in found.left_out["coulomb_temperature"]
+
+
+def test_a_slide_carries_its_load_without_an_arm():
+    made = [
+        Recording(one.name, one.kind, {"load_kg": 2.0}, {
+            "time_s": one.channels["time_s"],
+            "position_m": one.channels["position_rad"],
+            "force_n": one.channels["torque_n_m"],
+        })
+        for one in recordings(NO_GRAVITY, Bench(arm_m=0.0), FEW, seed=3)
+    ]  # fmt: skip
+    assert make_dataset(made, LINEAR, Processing()).trials[0].motion.load_inertia_kg_m2 == 2.0
+
+
 def test_a_study_with_next_to_no_steady_sliding_is_refused_with_what_to_record():
     made = recordings(trials=plans((0.2,)), bench=Bench(duration_s=1.5), seed=3)
     fit = fit_model(make_dataset(made, FACTS, Processing(rows="all")), ("inertia", "gravity", "coulomb", "viscous"))

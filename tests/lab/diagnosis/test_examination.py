@@ -4,7 +4,9 @@ from dataclasses import replace
 
 import pytest
 
+from compensator.lab.diagnosis.answer import Answer
 from compensator.lab.diagnosis.confirmation import doubts, is_confirmed, nearest_one
+from compensator.lab.diagnosis.diagnose import with_nearest
 from compensator.lab.diagnosis.diagnosis import Candidate
 from compensator.lab.diagnosis.wording import nearest_in_words
 from compensator.lab.effects.catalogue import effect_named
@@ -82,6 +84,16 @@ def test_the_nearest_is_what_more_data_may_confirm(changed, near):
         words = nearest_in_words(found)
         assert words.startswith("Direction-asymmetric viscous friction is likely (gain 1.7%, 90 % interval")
         assert words.endswith("to decide, record more of: several speeds in both directions.")
+
+
+def test_nothing_is_missing_is_not_said_beside_what_is_likely():
+    near = replace(
+        Candidate(effect_named("viscous_asymmetry"), (), 14.9, 0.001, 4.1, (), 0.009, 0.0088, SURE, None), gain=NOT_SURE
+    )
+    answer = Answer("nothing", "Nothing is missing.", 0.5, [], None, [])
+    assert with_nearest(answer, []) == "Nothing is missing."
+    assert with_nearest(answer, [near]).startswith("No effect is confirmed. Direction-asymmetric viscous friction is")
+    assert with_nearest(replace(answer, remains=True), [near]).startswith("Nothing is missing. Direction-asymmetric")
 
 
 @pytest.mark.parametrize(

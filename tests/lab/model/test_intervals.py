@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
+from compensator.lab.model import intervals
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.intervals import estimates, standard_errors, without_each
 from compensator.lab.model.weights import LIMITS, RowWeights
@@ -55,6 +56,14 @@ def test_shapes_and_units_are_listed_and_absent_loads_are_not():
     assert ("stribeck", "Stribeck speed", "rad/s") in listed
     assert "load inertia scale" not in [name for _, name, _ in listed]  # nothing hangs
     assert len(found) == 7
+
+
+def test_no_friction_may_be_larger_than_the_largest_effort(monkeypatch):
+    dataset = make_dataset(recordings(seed=4), FACTS, Processing())
+    fit = fit_model(dataset, ["inertia", "gravity", "coulomb", "viscous", "stribeck"])
+    monkeypatch.setattr(intervals, "_half_widths", lambda fit: np.full(fit.columns.shape[1], 1e3))
+    static = next(one for one in estimates(fit) if one.effect == "stribeck")
+    assert static.high == pytest.approx(float(np.abs(dataset.effort).max()))
 
 
 def test_rows_with_larger_residuals_weigh_less():
