@@ -19,6 +19,8 @@ _EFFORTS = (
     Effort("terminal_voltage", "terminal voltage", "V", ("voltage_v",)),
 )
 
+_REMEDY = "record one of them or map a column to it, or leave the trial out"
+
 
 def choose_effort(recordings: Sequence[Recording], facts: Facts) -> Effort:
     """The effort asked for by the facts, else the best one that every recording measures.
@@ -30,17 +32,34 @@ def choose_effort(recordings: Sequence[Recording], facts: Facts) -> Effort:
     for effort in wanted:
         if all(_measured(recording, effort.channels) for recording in recordings):
             return effort
-    needed = " or ".join(" x ".join(effort.channels) for effort in wanted)
     for recording in recordings:
-        if not any(_measured(recording, effort.channels) for effort in wanted):
-            raise UnusableDataError(
-                f"recording '{recording.name}' has no effort channel: found {', '.join(sorted(recording.channels))}; "
-                f"wanted {needed}; record one of them or map a column to it"
-            )
+        check_effort(recording, wanted)
     raise UnusableDataError(
         f"the {len(recordings)} recordings share no effort channel, though each has one; wanted in all of them "
-        f"{needed}; choose trials that measure the same"
+        f"{_in_words(wanted)}; choose trials that measure the same"
     )
+
+
+def check_effort(recording: Recording, wanted: Sequence[Effort]) -> None:
+    """Raise where a recording measures none of these.
+
+    Raises:
+        UnusableDataError: so; the message tells a channel that is not there from one that is empty.
+    """
+    if any(_measured(recording, effort.channels) for effort in wanted):
+        return
+    asked = {name for effort in wanted for name in effort.channels}
+    empty = sorted(name for name in asked & set(recording.channels) if not _measured(recording, (name,)))
+    found = ", ".join(sorted(set(recording.channels) - set(empty)))
+    also = f", and {', '.join(empty)} with no value in any sample" if empty else ""
+    remedy = "leave the trial out, or map a column that holds values" if empty else _REMEDY
+    raise UnusableDataError(
+        f"recording '{recording.name}' has no effort channel: found {found}{also}; wanted {_in_words(wanted)}; {remedy}"
+    )
+
+
+def _in_words(wanted: Sequence[Effort]) -> str:
+    return " or ".join(" x ".join(effort.channels) for effort in wanted)
 
 
 def _known(effort: Effort, facts: Facts) -> Effort:

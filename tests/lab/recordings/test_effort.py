@@ -42,8 +42,17 @@ def test_every_recording_must_have_it():
     pair = [recording("a", torque_n_m=ONE, current_a=ONE), recording("b", current_a=ONE)]
     assert choose_effort(pair, Facts()).quantity == "current"
     nothing = recording("c", torque_n_m=np.full(2, np.nan))
-    with pytest.raises(UnusableDataError, match=r"'c' has no effort channel: found .*torque_n_m or force_n or"):
+    with pytest.raises(UnusableDataError, match=r"'c' has no effort channel: found .*wanted torque_n_m or force_n or"):
         choose_effort([recording("a", torque_n_m=ONE), nothing], Facts())
+
+
+def test_a_channel_without_a_value_is_not_said_to_be_found():
+    empty = recording("c", torque_n_m=np.full(2, np.nan))
+    words = (
+        r"found position_rad, time_s, and torque_n_m with no value in any sample; wanted torque_n_m; leave"
+    )
+    with pytest.raises(UnusableDataError, match=words):
+        choose_effort([empty], Facts(effort="torque"))
 
 
 def test_the_wish_of_the_rig_is_honoured_or_refused():
