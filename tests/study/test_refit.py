@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import pytest
 
+from bench.recording_set import RecordingSet, import_recording_set
 from bench.store.errors import NotFoundError
 from bench.study.create import create_study
-from bench.study.errors import StudyError
+from bench.study.errors import NothingNewError, StudyError
+from bench.study.extend import extend_study
 from bench.study.keep import kept_of
 from bench.study.refit import refit
-from tests.lab.synthetic import plans
+from tests.lab.synthetic import plans, recordings
 from tests.study.conftest import RIG, imported
 
 
@@ -62,3 +64,21 @@ def test_a_shape_of_an_earlier_version_with_fewer_values_is_not_kept(store, stud
     shapes = {"backlash": [0.01], "stribeck": [0.2, 2.0], "of_a_package_that_is_gone": [1.0]}
     found = kept_of(replace(model, result={**model.result, "shapes": shapes})).shapes
     assert found.keys() == {"stribeck", "of_a_package_that_is_gone"}
+
+
+def test_trials_without_the_effort_of_the_study_are_left_out_and_told(store, study_id, experiment_id):
+    made = recordings(trials=plans(loads_kg=(0.1,), seed=9), seed=3)
+    del made[0].channels["torque_n_m"]
+    made[1].channels["torque_n_m"][:] = float("nan")
+    made[0].channels["current_a"] = made[2].channels["torque_n_m"]
+    some = import_recording_set(store, RecordingSet("set", RIG, made), "some without")
+    found = refit(store, study_id, [experiment_id, some])
+    assert found.trials == 13
+    assert ["load-100g-0-1" in found.skipped[0], "load-100g-1-1" in found.skipped[1]] == [True, True]
+    assert all("has no effort channel: found" in one and "; wanted torque_n_m; " in one for one in found.skipped)
+    extended = extend_study(store, create_study(store, "more", [experiment_id]).study_id, [some])
+    assert [one.name for one in extended.added] == ["load-100g-2-1"]
+    assert extended.left_out == ["load-100g-0-1", "load-100g-1-1"]
+    none = import_recording_set(store, RecordingSet("set", RIG, made[:1]), "all without")
+    with pytest.raises(NothingNewError):
+        extend_study(store, study_id, [none])

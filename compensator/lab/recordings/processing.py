@@ -12,6 +12,7 @@ import numpy as np
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.driven import driven_from_outside
+from compensator.lab.recordings.effort import check_effort
 from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.gaps import is_before_gap, typical_step_s
 from compensator.lab.recordings.low_pass import FILTER_ORDER, low_pass
@@ -82,7 +83,7 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
     """Resample, filter and differentiate one recording.
 
     Raises:
-        UnusableDataError: no position, or too short for the filter.
+        UnusableDataError: no position, no effort, or too short for the filter.
     """
     raw_time = recording.channels["time_s"]
     position_name = f"position_{facts.position_unit}"
@@ -95,6 +96,7 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
         raise UnusableDataError(
             f"recording '{recording.name}': {position_name} has no finite sample; leave the trial out"
         )
+    check_effort(recording, [effort])
     rate = sample_rate_hz(recording)
     period = 1.0 / rate
     time = _uniform(raw_time, period)
