@@ -55,7 +55,9 @@ def compare_units(store: Store, study_id: int, beside: Sequence[int], model_id: 
     progress.enter(FITTING)
     found, last = [], None
     for one in progress.each(units):
-        last = one.fit(chosen, shapes)
+        fit = one.fit(chosen, shapes)
+        _same_effort(study_ids[0], last or fit, one.study_id, fit)
+        last = fit
         found.append((one.told(last), unit_fit_of(last)))
     assert last is not None, "two units or more were fitted"
     return _answer(last, [unit for unit, _ in found], [fitted for _, fitted in found])
@@ -115,6 +117,16 @@ def _alike(study_ids: Sequence[int], found: Sequence[Definition]) -> list[Defini
             )
     cutoff_hz = min(one.cutoff_hz for one in found)
     return [replace(one, cutoff_hz=cutoff_hz) for one in found]
+
+
+def _same_effort(first_id: int, first: Fit, study_id: int, fit: Fit) -> None:
+    """Raise where two units are fitted to different quantities: what each measures tells, and no rig needs to."""
+    mine, theirs = fit.dataset.effort_definition, first.dataset.effort_definition
+    if (mine.quantity, mine.unit) != (theirs.quantity, theirs.unit):
+        raise StudyError(
+            f"studies {first_id} and {study_id} are not of one kind: the effort is {theirs.title} [{theirs.unit}] and "
+            f'{mine.title} [{mine.unit}]; record the same of both, or name it in both rigs ([effort] quantity = "...")'
+        )
 
 
 def _words(fact: str) -> str:

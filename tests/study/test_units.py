@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bench.recording_set import RecordingSet, import_recording_set
 from bench.store import Store
 from bench.study.changes import add_effect
 from bench.study.create import create_study
 from bench.study.errors import StudyError
 from bench.study.units import compare_units
-from tests.lab.synthetic import Bench, Joint, plans
+from tests.lab.synthetic import Bench, Joint, plans, recordings
 from tests.study.conftest import RIG, imported
 
 UNITS = 7
@@ -113,3 +114,14 @@ def test_too_few_units_and_other_kinds_are_refused(store, study_ids):
     wider = create_study(store, "all rows", experiment_ids, base=MODEL, cutoff_hz=6.0, rows="moving").study_id
     with pytest.raises(StudyError, match="counts sliding rows"):
         compare_units(store, study_ids[0], [study_ids[1], wider])
+
+
+def test_units_whose_efforts_are_different_quantities_are_refused(store, study_ids):
+    made = recordings(TYPE, SHORT, plans(loads_kg=(0.0, 0.1)), seed=3)
+    for one in made:
+        one.channels["voltage_v"] = one.channels.pop("torque_n_m")
+    experiment = import_recording_set(store, RecordingSet("set", RIG, made), "by voltage")
+    other = create_study(store, "by voltage", [experiment], base=MODEL, cutoff_hz=6.0).study_id
+    words = r"not of one kind: the effort is joint torque \[N m\] and terminal voltage \[V\]; record the same"
+    with pytest.raises(StudyError, match=words):
+        compare_units(store, study_ids[0], [study_ids[1], other])
