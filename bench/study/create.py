@@ -18,7 +18,7 @@ from bench.study.selection import keep, split, without
 from compensator.lab import progress
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.validation import held_out
-from compensator.lab.recordings.bandwidth import choose_cutoff_hz
+from compensator.lab.recordings.bandwidth import check_cutoff, choose_cutoff_hz
 from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.processing import lowest_cutoff_hz
@@ -82,6 +82,8 @@ def definition_of(
             read.update(zip((trial.id for trial in trials), recordings, strict=True))
         told = all(LOAD in one.channels and bool(np.isfinite(one.channels[LOAD]).any()) for one in recordings)
         effects = _base_effects(base) if base else base_model(store, experiment_ids, facts, told)
+        if cutoff_hz:
+            check_cutoff(cutoff_hz, recordings)
         cutoff = cutoff_hz or choose_cutoff_hz(recordings, choose_effort(recordings, facts), facts)
     used = trials if cutoff_hz else _long_enough(trials, recordings, cutoff)
     held = split(used, hold_out)

@@ -24,6 +24,7 @@ from compensator.lab.recordings.recording import Recording
 COHERENT = 0.5  # of the highest coherence further down
 LEAST_COHERENCE = 0.1  # less is no motion's
 LOWEST_HZ = 2.0
+HIGHEST_SHARE = 0.2  # of the sample rate: three times that, for the position, is beyond Nyquist already
 MOTION_SHARE = 0.99
 SEGMENT_S = 4.0
 SURELY = 3.0  # times the noise: a spectral estimate from so few segments scatters so far once in a hundred (Welch 1967)
@@ -50,7 +51,7 @@ def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Fac
             "to see motion: check that time_s is in seconds, or record faster"
         )
     some = recordings[:: -(-len(recordings) // MOST_RECORDINGS)]
-    highest_hz = 0.2 * slowest_hz
+    highest_hz = HIGHEST_SHARE * slowest_hz
     some = long_enough(some, highest_hz) or some  # all, if none is, for the error to be raised
     motion_hz = motion_bandwidth_hz(some, effort, facts, highest_hz)
     by_position_hz = position_noise_corner_hz(some, effort, facts, max(motion_hz, LOWEST_HZ))
@@ -58,6 +59,22 @@ def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Fac
     by_place_hz = min(PASSED * place_locked_hz(some, effort, facts), highest_hz)
     by_length_hz = min(2.0 * min(map(lowest_cutoff_hz, recordings)), highest_hz)
     return max(by_motion_hz, by_place_hz, by_length_hz, LOWEST_HZ)
+
+
+def check_cutoff(cutoff_hz: float, recordings: Sequence[Recording]) -> None:
+    """Raise where somebody's cut-off is higher than the data could choose: noise would go through unfiltered.
+
+    Raises:
+        UnusableDataError: so, or a recording with fewer than two samples.
+    """
+    rate_hz, slowest = min((sample_rate_hz(one), one.name) for one in recordings)
+    highest_hz = max(HIGHEST_SHARE * rate_hz, LOWEST_HZ)
+    told = f"{highest_hz:.3g}"
+    if cutoff_hz > max(highest_hz, float(told)):
+        raise UnusableDataError(
+            f"cutoff_hz is {cutoff_hz:g} Hz; at most {told} Hz is wanted for the {rate_hz:.3g} samples a second of "
+            f"recording '{slowest}': lower it, or leave it out to let the data choose"
+        )
 
 
 def motion_bandwidth_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, highest_hz: float) -> float:
