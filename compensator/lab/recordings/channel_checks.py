@@ -22,6 +22,7 @@ FACTOR = 3.0  # between two channels of one quantity: more is another unit
 POOR_SERVO = 1.0 / 20.0  # of its set point: a weak servo under load follows by little
 BLOCK = 20  # samples over which speed is averaged
 FEWEST_BLOCKS = 10
+CONSTANT = 1e-9  # of its largest value: what changes less does not change
 DEGREES = 180.0 / np.pi
 
 
@@ -170,9 +171,13 @@ def _unlike(factor: float, own: str, other: str) -> str:
 def _factor(own: FloatArray, other: FloatArray) -> float | None:
     """What one quantity is of another, by least squares; None where they have little to do with each other."""
     known = np.isfinite(own) & np.isfinite(other)
-    own, other = own[known] - np.mean(own[known]), other[known] - np.mean(other[known])
-    powers = float(own @ own), float(other @ other)
-    if len(own) < FEWEST_BLOCKS or min(powers) == 0.0:
+    if np.count_nonzero(known) < FEWEST_BLOCKS:
         return None
+    own, other = own[known], other[known]
+    # the mean of a constant is off by rounding: what is left would have a sign, and a scale
+    if any(np.ptp(one) <= CONSTANT * np.abs(one).max() for one in (own, other)):
+        return None
+    own, other = own - own.mean(), other - other.mean()
+    powers = float(own @ own), float(other @ other)
     both = float(own @ other)
     return both / powers[1] if both**2 > TOLD * powers[0] * powers[1] else None
