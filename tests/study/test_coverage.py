@@ -16,8 +16,8 @@ from bench.study.explanation.coverage import LOADS, RAMPS, REPEAT, REVERSALS, WA
 from bench.study.explanation.explain import STEPS, explain
 from bench.study.models.coverage import Coverage
 from compensator.lab.recordings.recording import FloatArray, Recording
-from tests.lab.synthetic import Joint, Truth, plans
-from tests.study.conftest import imported
+from tests.lab.synthetic import Joint, Truth, plans, recordings
+from tests.study.conftest import RIG, imported
 
 FREE = Rig.model_validate({"name": "free shaft", "horizontal": True})
 
@@ -53,6 +53,16 @@ def test_two_loads_both_ways_and_repeats(store: Store, experiment_id: int) -> No
     advised = [one.trial for one in found.advice]
     assert advised[0] == LOADS
     assert not {WARMTH, WARMER, REPEAT} & set(advised)
+
+
+def test_a_temperature_that_some_trials_lack_is_told_with_their_names(store: Store) -> None:
+    trials = recordings(trials=plans(loads_kg=(0.0, 0.2)), seed=3)
+    trials[1].channels["temperature_c"][:] = np.nan
+    del trials[4].channels["temperature_c"]
+    found = told(store, import_recording_set(store, RecordingSet("set", RIG, trials), "some without"))
+    (held,) = [one for one in found.held if one.quantity == "temperature"]
+    assert held.found == "no value in load-0g-1-1, load-200g-1-1"
+    assert held.lacking.endswith("record temperature_c in every trial, or leave out those without it")
 
 
 def test_a_trial_too_short_for_the_filter_is_left_out_and_counted(store: Store) -> None:

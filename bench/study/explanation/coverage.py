@@ -11,6 +11,7 @@ from bench.study.material import load_model
 from bench.study.models.coverage import Advice, Coverage, Held, JudgedEffect
 from compensator.lab.at_rest.breakaway_rows import FEWEST_STARTS, breakaway_rows, starts_counted
 from compensator.lab.comparison.judgeable import Judgeable, judgeable, stretches_of
+from compensator.lab.diagnosis.data_checks import some_of
 from compensator.lab.diagnosis.wording import too_short_in_words
 from compensator.lab.effects.effect import Effect
 from compensator.lab.rows import coverage as lab
@@ -103,7 +104,7 @@ def _held(
     )
     yield Held(quantity="position", found=_position(found, unit), lacking=_position_lacks(dataset))
     yield Held(quantity="loads", found=_loads(found.loads_kg), lacking=_loads_lack(found.loads_kg))
-    yield Held(quantity="temperature", found=_warmth(found.temperature_c), lacking=_warmth_lacks(found, effects))
+    yield Held(quantity="temperature", found=_warmth(found), lacking=_warmth_lacks(found, effects))
     yield Held(
         quantity="starts from rest",
         found=f"{starts} whose effort is known",
@@ -147,8 +148,12 @@ def _loads_lack(loads_kg: Sequence[float]) -> str:
     return "" if len(loads_kg) >= FEWEST_LOADS else "two loads cannot tell a line from a curve"
 
 
-def _warmth(temperature_c: tuple[float, float] | None) -> str:
-    return "not measured" if temperature_c is None else f"{temperature_c[0]:.1f} to {temperature_c[1]:.1f} degC"
+def _warmth(found: lab.Coverage) -> str:
+    if found.temperature_c is not None:
+        return f"{found.temperature_c[0]:.1f} to {found.temperature_c[1]:.1f} degC"
+    without = found.without_temperature
+    # in some of the trials only: those who measured it would look for the fault in the others
+    return f"no value in {some_of(without)}" if len(without) < found.trials else "not measured"
 
 
 def _warmth_lacks(found: lab.Coverage, effects: Sequence[Judgeable]) -> str:
@@ -156,7 +161,9 @@ def _warmth_lacks(found: lab.Coverage, effects: Sequence[Judgeable]) -> str:
     asked = [one for one in effects if _goes_by_warmth(one.effect)]
     shown = [one.smallest for one in asked if one.standing in ("judgeable", "confounded")]
     if found.temperature_c is None or (asked and not shown):
-        return "effects of temperature cannot be seen"
+        some = 0 < len(found.without_temperature) < found.trials
+        remedy = "; record temperature_c in every trial, or leave out those without it" if some else ""
+        return f"effects of temperature cannot be seen{remedy}"
     if _warms_up(found.temperature_c) or not shown:  # without any, the model has them all
         return ""
     return f"less than {WARM_K:g} K: effects of temperature show from {min(shown):.2%} of the effort on"

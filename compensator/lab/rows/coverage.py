@@ -26,7 +26,8 @@ class Coverage:
         low, high: range of position.
         one_way: the most that a trial goes one way without coming back, in units of position.
         loads_kg: the different loads, rising; empty where none is told.
-        temperature_c: lowest and highest; None where it is not measured.
+        temperature_c: lowest and highest; None where it is not measured in every trial.
+        without_temperature: names of the trials in which it is not.
         repeats: trials of which another has the same kind and conditions.
         driven_s: time in which something else turns the joint.
         usable: share of the samples that can be used, 0..1.
@@ -44,6 +45,7 @@ class Coverage:
     one_way: float
     loads_kg: tuple[float, ...]
     temperature_c: tuple[float, float] | None
+    without_temperature: tuple[str, ...]
     repeats: int
     driven_s: float
     usable: float
@@ -78,6 +80,11 @@ def coverage_of(dataset: Dataset) -> Coverage:
         one_way=max(_one_way(trial.motion.position) for trial in dataset.trials),
         loads_kg=_loads_kg(recordings),
         temperature_c=(float(warmth.min()), float(warmth.max())) if len(warmth) and np.isfinite(warmth).all() else None,
+        without_temperature=tuple(
+            trial.signals.recording.name
+            for trial in dataset.trials
+            if not np.isfinite(trial.motion.temperature_c).any()
+        ),
         repeats=sum(map(len, repeats(recordings))),
         driven_s=sum(_driven_s(trial) for trial in dataset.trials),
         usable=float(np.mean(np.concatenate([trial.signals.usable for trial in dataset.trials]))),
