@@ -9,7 +9,7 @@ from compensator.lab.diagnosis.alien_effort import alien_effort
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import LEAST_OF_EFFORT, rms
 from compensator.lab.model.linear import solve, solve_without
-from compensator.lab.recordings.processing import SATURATED_DUTY
+from compensator.lab.recordings.processing import SATURATED_DUTY, Signals
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.recordings.stuck_sensor import stuck_positions
 from compensator.lab.rows.dataset import FEWEST_ROWS, Dataset
@@ -201,13 +201,32 @@ def _unused(fit: Fit) -> list[str]:
     """Trials of no use to any effect. Those that only reverse still tell of effects with memory."""
     dataset = fit.dataset
     used = set(np.unique(dataset.trial_index[dataset.in_regimes("moving")]).tolist())
-    idle = [f"'{t.signals.recording.name}'" for index, t in enumerate(dataset.trials) if index not in used]
-    if not idle:
-        return []
+    idle: dict[tuple[str, str], list[str]] = {}
+    for index, trial in enumerate(dataset.trials):
+        if index not in used:
+            idle.setdefault(_why_idle(trial.signals), []).append(f"'{trial.signals.recording.name}'")
     return [
-        f"not used, since the joint does not move in any usable row of theirs: {', '.join(idle)}; record motion, with "
-        "the duty below its limit, or leave them out"
+        f"not used, since {why}: {', '.join(names)}; {remedy}, or leave them out"
+        for (why, remedy), names in idle.items()
     ]
+
+
+def _why_idle(signals: Signals) -> tuple[str, str]:
+    """Why no row of a trial shows motion, and what to record: what takes most samples, where that can be seen."""
+    channels = signals.recording.channels
+    off = 1.0 - float(np.mean(channels["enabled"] > 0.5)) if "enabled" in channels else 0.0
+    at_limit = float(np.mean(np.abs(channels["duty"]) >= SATURATED_DUTY)) if "duty" in channels else 0.0
+    if not signals.usable.any() and off > max(at_limit, SATURATED_SHARE):
+        return "the power stage is off in all that could be used of them (enabled = 0)", "record with it on"
+    if not signals.usable.any() and at_limit > SATURATED_SHARE:
+        return (
+            "the duty is at its limit in all that could be used of them",
+            "record motion, with the duty below its limit",
+        )
+    return (
+        "the joint does not move in any usable row of theirs",
+        "record motion, with the duty below its limit",
+    )
 
 
 def _same_samples(fit: Fit) -> list[str]:

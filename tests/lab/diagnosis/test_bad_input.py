@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from compensator.lab.comparison.comparison import compare
-from compensator.lab.diagnosis.data_checks import fatal_problems
+from compensator.lab.diagnosis.data_checks import fatal_problems, lesser_problems
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.effects.catalogue import default_effects
@@ -155,7 +155,7 @@ def test_a_complete_model_of_poor_data_lacks_nothing(made: Made) -> None:
 def test_a_trial_without_any_row_that_can_be_used_is_told_and_left_out():
     found = diagnosed(changed(put("duty", 1.0), slice(2, 3)))
     assert found.verdict == "nothing", found.sentence
-    assert any("record motion, with the duty below its limit" in problem for problem in found.data_problems)
+    assert any("not used, since the duty is at its limit" in problem for problem in found.data_problems)
 
 
 def test_loads_that_count_as_none_are_told():
@@ -182,6 +182,32 @@ def test_a_slide_carries_its_load_without_an_arm():
         for one in recordings(NO_GRAVITY, Bench(arm_m=0.0), FEW, seed=3)
     ]  # fmt: skip
     assert make_dataset(made, LINEAR, Processing()).trials[0].motion.load_inertia_kg_m2 == 2.0
+
+
+@pytest.mark.parametrize(
+    ("channel", "value", "words"),
+    [
+        (
+            "enabled",
+            0.0,
+            "power stage is off in all that could be used of them (enabled = 0): 'load-0g-2-1'; record with",
+        ),
+        (
+            "duty",
+            1.0,
+            "not used, since the duty is at its limit in all that could be used of them: 'load-0g-2-1'; record",
+        ),
+        (
+            "position_rad",
+            0.3,
+            "not used, since the joint does not move in any usable row of theirs: 'load-0g-2-1'; rec",
+        ),
+    ],
+)
+def test_why_a_trial_is_not_used(channel, value, words):
+    made = changed(put(channel, value), slice(2, 3))
+    fit = fit_model(make_dataset(made, FACTS, Processing()), ("inertia", "gravity", "coulomb", "viscous"))
+    assert any(words in problem for problem in lesser_problems(fit))
 
 
 def test_a_study_with_next_to_no_steady_sliding_is_refused_with_what_to_record():
