@@ -87,7 +87,10 @@ def test_how_criteria_are_read(store, experiment_id, criterion, held):
         ({"base": ["inertia", "viscous", "inertia"]}, "inertia stands twice"),
         ({"cutoff_hz": 0.0}, "cutoff_hz is 0 Hz; wanted is more than 0 Hz"),
         ({"cutoff_hz": float("nan")}, "cutoff_hz is nan Hz"),
-        ({"cutoff_hz": 1e6}, r"cutoff_hz is 1e\+06 Hz; at most 40 Hz is wanted for the 200 samples .* of recording 'load-"),
+        (
+            {"cutoff_hz": 1e6},
+            r"cutoff_hz is 1e\+06 Hz; at most 40 Hz is wanted for the 200 samples .* of recording 'load-",
+        ),
         ({"cutoff_hz": 41.0}, "at most 40 Hz is wanted"),
         ({"cutoff_hz": 0.01}, "samples; at least .* are needed to filter at 0.01 Hz"),
     ],
