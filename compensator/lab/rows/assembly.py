@@ -23,6 +23,7 @@ from compensator.lab.rows.dataset import Dataset, Processing, Scales, Trial
 
 SLOW_SHARE = 0.02  # of the 95 % quantile of speed: below, the direction of motion is uncertain
 NOISE_FACTOR = 3.0  # slow is at least this many standard deviations of the velocity noise
+COARSE_SHARE = 0.5  # of the same speed: where the noise alone makes so much slow, no longer trial helps
 TINY_SHARE = 0.01  # of slow: the sign of velocity is never smoothed less, so that it stays differentiable
 ROWS_PER_CUTOFF_PERIOD = 2.5  # Nyquist rate and a margin for the filter's slope: at 2.0 the errors alias
 NUMERIC_CONDITIONS = ("load_kg", "arm_m", SESSION_START)
@@ -84,6 +85,8 @@ def _too_few(dataset: Dataset, moving: int, samples: int) -> str:
     rows, near = len(dataset.regime), int((dataset.regime == Regime.TRANSIENT).sum())
     if moving < FEWEST_ROWS:
         remedy = WANTED_MOTION
+    elif NOISE_FACTOR * dataset.scales.noise > COARSE_SHARE * dataset.scales.fast:
+        remedy = "the position resolves no slower motion: use a sensor of more counts, or move faster"
     elif near >= FEWEST_ROWS:
         remedy = "record longer strokes at a steady speed, or count the rows near reversals, too (rows = moving)"
     else:

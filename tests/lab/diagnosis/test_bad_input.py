@@ -210,6 +210,12 @@ def test_why_a_trial_is_not_used(channel, value, words):
     assert any(words in problem for problem in lesser_problems(fit))
 
 
+def test_a_coarse_sensor_is_told_where_a_longer_trial_would_not_help():
+    made = recordings(trials=plans((0.0,)), bench=Bench(duration_s=30.0, quantum=2.0 * np.pi / 12.0), seed=3)
+    with pytest.raises(UnusableDataError, match="the position resolves no slower motion: use a sensor of more counts"):
+        make_dataset(made, FACTS, Processing(cutoff_hz=6.0))
+
+
 def test_a_study_with_next_to_no_steady_sliding_is_refused_with_what_to_record():
     made = recordings(trials=plans((0.2,)), bench=Bench(duration_s=1.5), seed=3)
     fit = fit_model(make_dataset(made, FACTS, Processing(rows="all")), ("inertia", "gravity", "coulomb", "viscous"))
