@@ -52,8 +52,10 @@ def create_study(
         leave_out: names of trials that are not used.
 
     Raises:
-        StudyError: no usable trials, a criterion that fits none, different rigs, an unknown effect.
+        StudyError: an empty name, no usable trials, a criterion that fits none, different rigs, an unknown effect.
     """
+    if not name.strip():
+        raise StudyError("the study's name is empty; wanted is one character or more, as in `study new winter`")
     read: dict[int, Recording] = {}
     definition = definition_of(store, experiment_ids, hold_out, base, where, cutoff_hz, rows, read, leave_out)
     return _create(store, name, definition, read)

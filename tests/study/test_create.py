@@ -102,6 +102,12 @@ def test_what_is_refused(store, experiment_id, arguments, words):
     assert len(store.studies()) == before  # nothing half-made is left
 
 
+@pytest.mark.parametrize("name", ["", "  "])
+def test_a_study_without_a_name_is_refused(store, experiment_id, name):
+    with pytest.raises(StudyError, match="the study's name is empty; wanted is one character or more"):
+        create_study(store, name, [experiment_id])
+
+
 def test_held_out_trials_at_rest_judge_nothing(store):
     made = recordings(trials=plans((0.0, 0.2)), seed=1)
     made[1].channels["position_rad"][:] = 0.3
