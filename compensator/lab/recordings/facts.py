@@ -3,6 +3,7 @@
 Everything is optional; what is missing limits what can be named.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -89,3 +90,34 @@ class Effort:
         for name in self.channels:
             values = values * recording.channels[name]
         return values
+
+    def is_measured(self, recording: Recording) -> bool:
+        """Whether a recording has all its channels, with a value in some sample."""
+        return all(_has_values(recording, name) for name in self.channels)
+
+
+def lack_of_effort(recording: Recording, wanted: Sequence[Effort]) -> str:
+    """What a recording has instead of any of these, and what to do; empty where it measures one of them.
+
+    A channel that is there without a value is told from one that is not: it is no matter of its name.
+    """
+    if any(effort.is_measured(recording) for effort in wanted):
+        return ""
+    asked = {name for effort in wanted for name in effort.channels}
+    empty = sorted(name for name in asked & set(recording.channels) if not _has_values(recording, name))
+    found = ", ".join(sorted(set(recording.channels) - set(empty)))
+    also = f", and {', '.join(empty)} with no value in any sample" if empty else ""
+    remedy = "map a column that holds values" if empty else "record one of them or map a column to it"
+    return (
+        f"recording '{recording.name}' has no effort channel: found {found}{also}; wanted {in_words(wanted)}; "
+        f"{remedy}, or leave the trial out"
+    )
+
+
+def in_words(wanted: Sequence[Effort]) -> str:
+    """The channels of each effort."""
+    return " or ".join(" x ".join(effort.channels) for effort in wanted)
+
+
+def _has_values(recording: Recording, name: str) -> bool:
+    return name in recording.channels and bool(np.isfinite(recording.channels[name]).any())

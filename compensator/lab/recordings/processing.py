@@ -12,8 +12,7 @@ import numpy as np
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.driven import driven_from_outside
-from compensator.lab.recordings.effort import check_effort
-from compensator.lab.recordings.facts import Effort, Facts
+from compensator.lab.recordings.facts import Effort, Facts, lack_of_effort
 from compensator.lab.recordings.gaps import is_before_gap, typical_step_s
 from compensator.lab.recordings.low_pass import FILTER_ORDER, low_pass
 from compensator.lab.recordings.recording import BoolArray, FloatArray, Recording
@@ -96,7 +95,8 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
         raise UnusableDataError(
             f"recording '{recording.name}': {position_name} has no finite sample; leave the trial out"
         )
-    check_effort(recording, [effort])
+    if lack := lack_of_effort(recording, [effort]):
+        raise UnusableDataError(lack)
     rate = sample_rate_hz(recording)
     period = 1.0 / rate
     time = _uniform(raw_time, period)

@@ -48,7 +48,7 @@ def test_every_recording_must_have_it():
 
 def test_a_channel_without_a_value_is_not_said_to_be_found():
     empty = recording("c", torque_n_m=np.full(2, np.nan))
-    words = r"found position_rad, time_s, and torque_n_m with no value in any sample; wanted torque_n_m; leave"
+    words = r"found position_rad, time_s, and torque_n_m with no value in any sample; wanted torque_n_m; map"
     with pytest.raises(UnusableDataError, match=words):
         choose_effort([empty], Facts(effort="torque"))
 
