@@ -13,6 +13,7 @@ from bench.study.models.stages import CHANGE, FITTING, JUDGING
 from bench.study.models.study import AddedTrial, Extended, note_for
 from bench.study.selection import Criterion
 from compensator.lab import progress
+from compensator.lab.diagnosis.data_checks import some_of
 from compensator.lab.rows.assembly import usable
 
 
@@ -40,8 +41,10 @@ def extend_study(store: Store, study_id: int, experiment_ids: Sequence[int] = ()
     new = [trial for number in numbers for trial in _new_trials(store, number, definition)]
     trials = [trial for trial in new if usable(dataset, [store.recording(trial.id)])]
     if not trials:
+        names = some_of([f"'{trial.name}'" for trial in new])
+        unusable = f" ({names}: too short for its filter, or without its effort or position)" if new else ""
         raise NothingNewError(
-            f"there is no completed trial that study {study_id} can use and has not yet; run those that "
+            f"there is no completed trial that study {study_id} can use and has not yet{unusable}; run those that "
             f"`study suggest {study_id}` names, or name other experiments"
         )
     before = model_of(store, study_id, None)

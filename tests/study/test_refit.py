@@ -80,5 +80,5 @@ def test_trials_without_the_effort_of_the_study_are_left_out_and_told(store, stu
     assert [one.name for one in extended.added] == ["load-100g-2-1"]
     assert extended.left_out == ["load-100g-0-1", "load-100g-1-1"]
     none = import_recording_set(store, RecordingSet("set", RIG, made[:1]), "all without")
-    with pytest.raises(NothingNewError):
+    with pytest.raises(NothingNewError, match=r"has not yet \('load-100g-0-1': too short .*, or without its effort"):
         extend_study(store, study_id, [none])
