@@ -477,7 +477,7 @@ class Dataset:
             empty = [t.signals.recording.name for t in self.trials if not np.isfinite(t.motion.temperature_c).all()]
             if empty:
                 return f"it is empty, in part or all the time, in {', '.join(empty[:3])}; leave such trials out"
-        elif not self._is_told(effect.varies_with):
+        elif effect.varies_with is not None and not self._is_told(effect.varies_with):
             return f"no trial tells it; put it into trials.csv where it was known, or record {effect.excited_by}"
         return f"it does not; record {effect.excited_by}"
 
