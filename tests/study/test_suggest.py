@@ -150,7 +150,7 @@ def test_a_suggestion_says_what_of_its_prediction_is_promised(promised, told):
 
 
 def says(verdict, *names):
-    return SimpleNamespace(verdict=verdict, classes=[names], too_short=False)
+    return SimpleNamespace(verdict=verdict, classes=[names], named=names, too_short=False)
 
 
 @pytest.mark.parametrize(("names", "told"), [(["spring"], True), (["spring", "cogging"], False)])

@@ -16,7 +16,7 @@ from compensator.lab.model.fit import widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import predicts_better
 from compensator.lab.model.validation import held_out
-from compensator.lab.rows.assembly import FEWEST_ROWS
+from compensator.lab.rows.dataset import FEWEST_ROWS
 from compensator.lab.screening.candidates import Candidates
 from compensator.lab.screening.evidence import Screening
 from compensator.lab.screening.gathering import few_reversals, gather, with_noise
@@ -90,8 +90,8 @@ def judged(fit: Fit) -> FourFamilies:
     sliding_rows = int((fit.training & fit.dataset.in_regimes("sliding")).sum())
     if sliding_rows < FEWEST_ROWS:
         raise UnusableDataError(
-            f"{sliding_rows} of {int(fit.training.sum())} rows are of steady sliding, and a diagnosis needs "
-            f"{FEWEST_ROWS}: record longer strokes at a steady speed"
+            f"{sliding_rows} of {int(fit.training.sum())} rows that a model is fitted to are of steady sliding, and a "
+            f"diagnosis needs {FEWEST_ROWS}: record longer strokes at a steady speed"
         )
     gathered = with_noise(with_found_order(gather(fit)))
     physical = [block for block in gathered.named if not effect_named(block.name).pipeline]

@@ -217,9 +217,9 @@ def test_a_coarse_sensor_is_told_where_a_longer_trial_would_not_help():
 
 
 def test_a_study_with_next_to_no_steady_sliding_is_refused_with_what_to_record():
-    made = recordings(trials=plans((0.2,)), bench=Bench(duration_s=1.5), seed=3)
+    made = recordings(trials=[Plan("quick", [(0.2, 3.5, 0.0)], 0.15, 0.2, 25.0)], seed=3)
     fit = fit_model(make_dataset(made, FACTS, Processing(rows="all")), ("inertia", "gravity", "coulomb", "viscous"))
-    with pytest.raises(UnusableDataError, match="rows are of steady sliding, and a diagnosis needs 40: record longer"):
+    with pytest.raises(UnusableDataError, match=r"0 of .* steady sliding, and a diagnosis needs 20: record longer"):
         diagnose(fit)
 
 
