@@ -10,14 +10,13 @@ from bench.recording_set.transfer import is_by_control_loop
 from bench.store import Store
 from bench.store.records import Trial
 from bench.study.errors import StudyError, lab_errors
-from bench.study.keep import result_of, stored
+from bench.study.keep import judged
 from bench.study.material import Definition, Material, facts_of, load, material_of
 from bench.study.models.stages import CHANGE, FITTING, JUDGING
 from bench.study.models.study import ModelName, Study
 from bench.study.selection import keep, split, without
 from compensator.lab import progress
 from compensator.lab.effects.catalogue import default_effects, effect_named
-from compensator.lab.model.validation import held_out
 from compensator.lab.recordings.bandwidth import check_cutoff, choose_cutoff_hz
 from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.facts import Facts
@@ -118,9 +117,9 @@ def _create(store: Store, name: str, definition: Definition, read: dict[int, Rec
     progress.enter(FITTING)
     fit = draft.fit(list(definition.base))
     progress.enter(JUDGING)
-    judged = stored(result_of(fit, held_out(fit)))  # before anything is kept: a study has a model from the start
+    result = judged(fit)  # before anything is kept: a study has a model from the start
     material = replace(draft, study_id=store.create_study(name, definition.to_json()))
-    store.add_model(material.study_id, None, list(fit.names), judged)
+    store.add_model(material.study_id, None, list(fit.names), result)
     return _describe(store, material)
 
 

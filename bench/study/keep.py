@@ -16,7 +16,12 @@ from compensator.lab.model.validation import held_out
 
 def keep_model(store: Store, study_id: int, parent_id: int | None, fit: Fit) -> int:
     """Add a fitted model to its study. Returns its id."""
-    return store.add_model(study_id, parent_id, list(fit.names), stored(result_of(fit, held_out(fit))))
+    return store.add_model(study_id, parent_id, list(fit.names), judged(fit))
+
+
+def judged(fit: Fit) -> Values:
+    """What the store is given of a fitted model."""
+    return stored(result_of(fit, held_out(fit)))
 
 
 def kept_of(model: ModelRow) -> KeptModel:

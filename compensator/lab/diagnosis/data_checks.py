@@ -223,10 +223,7 @@ def _why_idle(signals: Signals) -> tuple[str, str]:
             "the duty is at its limit in all that could be used of them",
             "record motion, with the duty below its limit",
         )
-    return (
-        "the joint does not move in any usable row of theirs",
-        "record motion, with the duty below its limit",
-    )
+    return "the joint does not move in any usable row of theirs", "record motion"
 
 
 def _same_samples(fit: Fit) -> list[str]:

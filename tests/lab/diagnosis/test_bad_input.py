@@ -200,7 +200,7 @@ def test_a_slide_carries_its_load_without_an_arm():
         (
             "position_rad",
             0.3,
-            "not used, since the joint does not move in any usable row of theirs: 'load-0g-2-1'; rec",
+            "not used, since the joint does not move in any usable row of theirs: 'load-0g-2-1'; record motion, or",
         ),
     ],
 )
