@@ -100,3 +100,13 @@ def test_what_the_channel_of_another_mechanism_does_not_show_has_no_r():
     assert joint.drawn.sensors.effort in ("duty", "estimate")
     assert joint.evidences[0].ratio == pytest.approx(0.6, rel=0.35)
     assert joint.evidences[1].ratio < 0.01
+
+
+def test_samples_that_are_now_fresh_and_now_old_look_like_no_filter_of_the_effort():
+    # its drive updates values each millisecond, and its samples come at uneven times: noise of the acceleration
+    (item,) = (one for one in second_items_of(30042, 2, ["complete"]) if one.key == "second-30042-1-complete-0")
+    answer = judge_second(item).answer
+
+    assert answer is not None
+    assert answer.verdict == "nothing"
+    assert "effort_filter" not in answer.named

@@ -16,8 +16,15 @@ from scipy.signal import welch
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.place_locked import place_locked_hz
-from compensator.lab.recordings.plain_columns import explained_share, long_enough
-from compensator.lab.recordings.position_noise import position_noise, position_noise_corner_hz
+from compensator.lab.recordings.plain_columns import (
+    ACCELERATION,
+    ACCELERATION_OF_LOAD,
+    explained_share,
+    least_squares,
+    load_kg,
+    long_enough,
+    stacked,
+)
 from compensator.lab.recordings.processing import lowest_cutoff_hz, make_signals, sample_rate_hz
 from compensator.lab.recordings.recording import Recording
 
@@ -29,6 +36,8 @@ MOTION_SHARE = 0.99
 SEGMENT_S = 4.0
 SURELY = 3.0  # times the noise: a spectral estimate from so few segments scatters so far once in a hundred (Welch 1967)
 HARMONICS = 4.0
+MOST_NOISE = 0.01  # of the effort, as a good current sensor; the corner grows with its power of 0.4
+STEADY_HZ = 0.1  # what is slower has no acceleration
 BANDS_PER_OCTAVE = 2
 PASSED = 1.5  # times the frequency of a ripple: the filter lets most of it through
 MOST_RECORDINGS = 24  # enough to see a corner; keeps the cost bounded
@@ -85,10 +94,38 @@ def motion_bandwidth_hz(recordings: Sequence[Recording], effort: Effort, facts: 
         signals = make_signals(recording, effort, facts, highest_hz)
         segment = min(len(signals.velocity), int(SEGMENT_S * signals.rate_hz))
         at, density = welch(signals.velocity, signals.rate_hz, nperseg=segment)
-        noise = position_noise(recording, facts) * (2.0 * np.pi * at) ** 2
+        noise = signals.position_noise * (2.0 * np.pi * at) ** 2
         power += np.interp(frequencies, at, np.where(density > SURELY * noise, density - noise, 0.0), right=0.0)
     share = np.cumsum(power) / max(float(power.sum()), np.finfo(float).tiny)
     return float(frequencies[min(int(np.searchsorted(share, MOTION_SHARE)), len(frequencies) - 1)])
+
+
+def position_noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, motion_hz: float) -> float:
+    """Up to where noise of the position, as inertia makes it effort, comes to MOST_NOISE of the effort [Hz].
+
+    Args:
+        recordings: of the joint.
+        effort: which quantity.
+        facts: of the joint.
+        motion_hz: bandwidth of the motion, which tells the inertia; the corner is not below.
+
+    Returns:
+        The corner; infinite where the position has no noise, or no inertia is seen.
+    """
+    signals = [make_signals(one, effort, facts, motion_hz) for one in long_enough(recordings, motion_hz)]
+    if not signals:
+        return np.inf
+    columns, measured, _ = stacked(signals, STEADY_HZ, motion_hz)
+    if len(measured) <= columns.shape[1]:
+        return np.inf
+    found = least_squares(columns, measured)
+    inertias = [found[ACCELERATION] + load_kg(one) * found[ACCELERATION_OF_LOAD] for one in signals]
+    noises = [one.position_noise for one in signals]
+    density = float(np.mean(np.square(inertias) * noises)) * (2.0 * np.pi) ** 4  # per Hz^5
+    if not density > 0.0:
+        return np.inf
+    corner_hz = (5.0 * MOST_NOISE**2 * float(np.mean(measured**2)) / density) ** 0.2
+    return max(float(corner_hz), motion_hz)
 
 
 def noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, highest_hz: float) -> float:

@@ -15,6 +15,7 @@ from compensator.lab.recordings.driven import driven_from_outside
 from compensator.lab.recordings.facts import Effort, Facts, lack_of_effort
 from compensator.lab.recordings.gaps import is_before_gap, typical_step_s
 from compensator.lab.recordings.low_pass import FILTER_ORDER, low_pass
+from compensator.lab.recordings.position_noise import mixed_by_interpolation, position_noise, without_noise
 from compensator.lab.recordings.recording import BoolArray, FloatArray, Recording
 
 DIFFERENTIATION_FACTOR = 3.0  # differentiation cut-off / final cut-off; below 3 a false elasticity appears
@@ -33,6 +34,7 @@ class Signals:
         time_s: uniform.
         rate_hz: of the grid.
         position, velocity, acceleration, jerk: differentiated after the wide filter.
+        position_noise: its density before, in its unit squared per Hz.
         effort: raw, on the grid.
         temperature_c, supply_v, load: NaN where not measured; load: of a torque sensor [N m].
         usable: False in gaps, with the power stage off, in saturation, and at the ends.
@@ -45,6 +47,7 @@ class Signals:
     velocity: FloatArray
     acceleration: FloatArray
     jerk: FloatArray
+    position_noise: float
     effort: FloatArray
     temperature_c: FloatArray
     supply_v: FloatArray
@@ -107,9 +110,11 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
             f"to filter at {cutoff_hz:.3g} Hz; record longer, choose a higher cut-off, or leave the trial out"
         )
     raw_position = recording.channels[position_name]
-    position = low_pass(_resample(time, raw_time, raw_position), DIFFERENTIATION_FACTOR * cutoff_hz, rate)
+    even_position = _resample(time, raw_time, raw_position)
+    position = low_pass(even_position, DIFFERENTIATION_FACTOR * cutoff_hz, rate)
     velocity = rate_of_change(position, rate)
-    acceleration = rate_of_change(velocity, rate)
+    mixed = mixed_by_interpolation(time, raw_time[np.isfinite(raw_position)])
+    acceleration = without_noise(rate_of_change(velocity, rate), even_position, mixed, rate)
     raw_effort = effort.of(recording)
     return Signals(
         recording=recording,
@@ -119,6 +124,7 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
         velocity=velocity,
         acceleration=acceleration,
         jerk=rate_of_change(acceleration, rate),
+        position_noise=position_noise(even_position, mixed, rate),
         effort=_resample(time, raw_time, raw_effort),
         temperature_c=_optional(recording, "temperature_c", time),
         supply_v=_optional(recording, "supply_v", time),

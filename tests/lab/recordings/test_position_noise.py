@@ -1,17 +1,24 @@
-"""Samples that are old by differing times are noise of the position, and make no inertia smaller."""
+"""Samples that are old by differing times are noise of the position: no inertia gets smaller."""
 
 import numpy as np
 import pytest
 
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
-from compensator.lab.recordings.position_noise import position_noise
+from compensator.lab.recordings.effort import choose_effort
+from compensator.lab.recordings.position_noise import without_noise
+from compensator.lab.recordings.processing import make_signals
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from tests.lab.synthetic import FACTS, Bench, Joint, Plan, recordings
 
 RATE_HZ = 125.0
 ODD = (1, 3, 5, 7, 9)  # harmonics of a triangle: quick turns, and little acceleration between
+
+
+def noise_density(recording):
+    """Of a recording's position, as its signals have it."""
+    return make_signals(recording, choose_effort([recording], FACTS), FACTS, 5.0).position_noise
 
 
 def turning(oldest_s: float):
@@ -41,7 +48,7 @@ def test_the_noise_is_that_of_a_uniform_age_times_the_speed():
     for one in turning(oldest_s):
         speed = np.gradient(one.channels["position_rad"], 1.0 / RATE_HZ)
         expected = oldest_s**2 / 12.0 * float(np.mean(speed**2)) * 2.0 / RATE_HZ
-        assert position_noise(one, FACTS) == pytest.approx(expected, rel=0.5)
+        assert noise_density(one) == pytest.approx(expected, rel=0.5)
 
 
 def unevenly(made, jitter: float):
@@ -60,10 +67,40 @@ def test_noise_of_samples_at_uneven_times_is_told_though_half_of_it_is_lost_betw
     made = recordings(bench=Bench(rate_hz=RATE_HZ, quantum=0.0), trials=[Plan("wide", [(1.0, 0.31, 0.0)])])
     (one,) = unevenly(made, jitter=0.1)
     one.channels["position_rad"][:] = np.round(one.channels["position_rad"] / quantum) * quantum
-    assert position_noise(one, FACTS) == pytest.approx(quantum**2 / 12.0 * 2.0 / RATE_HZ, rel=0.3)
+    assert noise_density(one) == pytest.approx(quantum**2 / 12.0 * 2.0 / RATE_HZ, rel=0.3)
 
 
 def test_counts_are_noise_of_a_twelfth_of_their_square():
     quantum = 1e-3
     made = recordings(bench=Bench(rate_hz=RATE_HZ, quantum=quantum), trials=[Plan("wide", [(1.0, 0.31, 0.0)])])
-    assert position_noise(made[0], FACTS) == pytest.approx(quantum**2 / 12.0 * 2.0 / RATE_HZ, rel=0.3)
+    assert noise_density(made[0]) == pytest.approx(quantum**2 / 12.0 * 2.0 / RATE_HZ, rel=0.3)
+
+
+def accelerated(position):
+    """Second differences of a position at RATE_HZ."""
+    return np.gradient(np.gradient(position, 1.0 / RATE_HZ), 1.0 / RATE_HZ)
+
+
+def test_an_acceleration_keeps_its_motion_and_loses_noise_where_there_is_only_noise():
+    time_s = np.arange(0.0, 12.0, 1.0 / RATE_HZ)
+    quick, steady = (time_s > 1.0) & (time_s < 5.0), (time_s > 7.0) & (time_s < 11.0)
+    position = np.where(time_s < 6.0, np.sin(2.0 * np.pi * 3.0 * time_s), 2.0 * (time_s - 6.0))
+    noisy = position + 1e-4 * np.random.default_rng(3).standard_normal(len(time_s))
+    exact, measured = accelerated(position), accelerated(noisy)
+    found = without_noise(measured, noisy, 0.0, RATE_HZ)
+    assert rms(found[steady] - exact[steady]) < 0.4 * rms(measured[steady] - exact[steady])
+    assert rms(found[quick] - exact[quick]) < 0.45 * rms(measured[quick] - exact[quick])
+    assert found[quick] @ exact[quick] / (exact[quick] @ exact[quick]) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_an_acceleration_without_noise_stays_as_it_is():
+    time_s = np.arange(0.0, 8.0, 1.0 / RATE_HZ)
+    position = np.sin(2.0 * np.pi * 1.5 * time_s) + 0.3 * np.sin(2.0 * np.pi * 4.0 * time_s)
+    exact = accelerated(position)
+    inside = slice(20, -20)
+    assert without_noise(exact, position, 0.0, RATE_HZ)[inside] == pytest.approx(exact[inside], abs=1e-3 * rms(exact))
+
+
+def rms(values):
+    """Root of the mean square."""
+    return float(np.sqrt(np.mean(np.square(values))))
