@@ -11,6 +11,7 @@ NoteCode = Literal[
     "differs-by-run",
     "helps",
     "recurs",
+    "rings",
     "structure-remains",
     "swings",
     "too-few-starts",
@@ -24,6 +25,7 @@ at-rest: the joint at rest contradicts the model.
 differs-by-run: a constant differs from run to run.
 helps: an effect lowers the held-out error well and for sure, though noise alone would look as strong.
 recurs: with the effect named, what is left comes back with the position.
+rings: with it, what is left has a resonance.
 structure-remains: with it, structure over a variable remains.
 swings: with it, what is left swings at one frequency.
 too-few-starts: starts from rest are too few to name anything.

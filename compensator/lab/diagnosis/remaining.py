@@ -7,6 +7,7 @@ from compensator.lab.diagnosis.note import Note, Value
 from compensator.lab.effects.free_curve import AGAINST_MOTION, FORCE, TIMES_SPEED, way_of
 from compensator.lab.left_over.left_over import LeftOver, left_over, unexplained_in_words
 from compensator.lab.left_over.orders import recurring_in_words
+from compensator.lab.left_over.remainder import ringing_in_words
 from compensator.lab.left_over.repeated import recurring_share_in_words
 from compensator.lab.left_over.swinging import swinging_in_words
 from compensator.lab.left_over.wandering import wandering_in_words
@@ -61,6 +62,9 @@ def what_remains(fit: Fit, before: Candidates, name: str) -> list[Note]:
     if (wandering := left.wandering) is not None:
         text = f"After {name}, {_wanders(fit, left)}. {recurring_share_in_words(left.recurs)}"
         return [Note("wanders", text, {"effect": name, "what": wandering.what, "share": wandering.share})]
+    if (rings := left.remainder.resonance) is not None:
+        text = f"After {name}, what is left {ringing_in_words(rings)}."
+        return [Note("rings", text, {"effect": name, "frequency_hz": rings.frequency_hz, "denser": rings.denser})]
     text = (
         f"After {name}, what is left is still more than noise, {left.remainder.share:.1%} of the effort, and "
         "has structure over no variable that is measured; add it and diagnose again."

@@ -6,7 +6,7 @@ from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.constants import Constants
 from compensator.lab.left_over.error_budget import PLAIN, WANDERING_BESIDE_A_NAME
 from compensator.lab.left_over.orders import Line, line_of, recurring_in_words
-from compensator.lab.left_over.remainder import LEAST_SHARE, Remainder, remainder_of
+from compensator.lab.left_over.remainder import LEAST_SHARE, Remainder, remainder_of, ringing_in_words
 from compensator.lab.left_over.repeated import recurring_share_in_words, share_that_recurs
 from compensator.lab.left_over.swinging import Swing, ripple_of, swing_of, swinging_in_words
 from compensator.lab.left_over.wandering import Wandering, wandering_of
@@ -108,6 +108,8 @@ def unexplained_in_words(left: LeftOver, driver: str | None, stretches: int, fac
         how = f"it {swinging_in_words(left.swing)}"
     elif wanders:
         how = wanders
+    elif left.remainder.resonance is not None:
+        how = f"it {ringing_in_words(left.remainder.resonance)}"
     elif driver is not None:
         how = f"it varies with {driver}, most of all that is measured"
     else:

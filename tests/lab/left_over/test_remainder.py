@@ -1,19 +1,22 @@
 """What a model leaves: more than noise, or not."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
+from compensator.lab.diagnosis.remaining import what_remains
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.left_over.remainder import Remainder, remainder_of
 from compensator.lab.left_over.swinging import swing_of
-from compensator.lab.model.fit import fit_model
+from compensator.lab.model.fit import fit_effects, fit_model
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
+from compensator.lab.screening.gathering import gather_curves
 from tests.lab.left_over.judged import leaving
-from tests.lab.synthetic import FACTS, Bench, Joint, plans, recordings
+from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 
 
 def fitted(extra=None, seed=0, **bench):
@@ -50,7 +53,49 @@ def test_what_is_surely_denser_but_small_beside_the_noise_is_not_told():
 def test_coloured_noise_is_noise():
     found = left(fitted(noise_memory=0.8))
     assert found.denser > 1.0
+    assert found.resonance is None
     assert not found.is_more_than_noise
+
+
+def struck(x: Truth, hz: float = 3.0, damping: float = 0.15) -> np.ndarray:
+    """Torque of a small mass on a spring at the arm's end, which the arm's acceleration strikes."""
+    w, step_s = 2.0 * np.pi * hz, float(x.time_s[1] - x.time_s[0])
+    way, speed, force = 0.0, 0.0, np.empty(len(x.time_s))
+    for at, acceleration in enumerate(x.a):
+        speed += step_s * (-acceleration - w**2 * way - 2.0 * damping * w * speed)
+        way += step_s * speed
+        force[at] = -0.004 * w**2 * way
+    return force
+
+
+def restless(x: Truth) -> np.ndarray:
+    """Strikes of all frequencies."""
+    random = np.random.default_rng(int(1e6 * abs(x.q[0])))
+    return struck(replace(x, a=x.a + 5.0 * random.standard_normal(len(x.a))))
+
+
+def test_what_swings_when_it_is_struck_rings_at_its_frequency():
+    fit = fitted(restless, noise=0.002)
+    rings = left(fit).resonance
+    assert rings is not None
+    assert rings.frequency_hz == pytest.approx(3.0, rel=0.15)
+    assert swing_of(gather_curves(fit)) is None, "it is no line that keeps its phase"
+    answer = diagnose(fit)
+    assert answer.remains
+    assert re.search(r"rings at about [23](\.\d)? Hz", answer.sentence)
+
+
+def test_a_resonance_is_one_of_most_trials():
+    fit = fitted(lambda x: restless(x) * (x.load_kg == 0.25) * (x.q[0] > 0.0), noise=0.002)
+    assert left(fit).resonance is None
+
+
+def test_what_is_left_and_rings_is_told_beside_a_name_with_its_frequency():
+    fit = fitted(lambda x: restless(x) + 0.3 * x.q, noise=0.002)
+    before = gather_curves(fit)
+    notes = what_remains(fit_effects(fit, [*fit.names, "spring"]), before, "spring")
+    (rings,) = (note for note in notes if note.code == "rings")
+    assert rings.values["frequency_hz"] == pytest.approx(3.0, rel=0.15)
 
 
 def test_what_follows_the_motion_is_no_noise():
