@@ -5,8 +5,8 @@ added, each earlier one is taken out again and its place is judged anew, given a
 on held-out rows is dropped (Efroymson 1960, with held-out error in place of F).
 
 Two effects that are missing at once may look like something that no formula follows: a free curve imitates both, and
-each formula but one. So what is of no name is searched further from the likeliest formulas, and has names after all
-where two or more of them leave nothing.
+each formula but one. Two that differ from trial to trial alone are noise to each other. So where nothing is confirmed,
+the search goes on from the likeliest formulas, and has names after all where two or more of them leave nothing.
 """
 
 from dataclasses import dataclass, replace
@@ -101,10 +101,8 @@ def search(fit: Fit, most: int = MOST_EFFECTS, first: Diagnosis | None = None, o
     """
     outset = held_out(fit).relative if outset is None else outset
     found = _forward(fit, most, first or diagnose(fit), outset)
-    if found.last.verdict != "unknown-effect":
-        return found
     room = most - len(found.added)
-    further = _past_curve(found.fit, room, found.last, outset) if room > 1 else None
+    further = _from_likeliest(found.fit, room, found.last, outset) if room > 1 else None
     return found if further is None else Search(fit, (*found.steps, *further.steps), further.last)
 
 
@@ -133,26 +131,28 @@ def _is_to_add(diagnosis: Diagnosis, explained: float) -> bool:
     return diagnosis.verdict == "missing" and slight_one(diagnosis, explained) is None
 
 
-def _past_curve(fit: Fit, most: int, unknown: Diagnosis, outset: float) -> Search | None:
-    """From a model that seems to lack what has no name: the first way by formulas that leaves nothing; None without.
+def _from_likeliest(fit: Fit, most: int, diagnosis: Diagnosis, outset: float) -> Search | None:
+    """From a model to which nothing is confirmed: the first way by likely formulas that leaves nothing; None without.
 
-    A single formula is none: it was held against the curve already.
+    A single formula is none: it was judged already.
 
     Args:
         fit: the model.
         most: effects that are added at most.
-        unknown: its diagnosis.
+        diagnosis: of it.
         outset: as `search`.
     """
     # what can be it, by very strong evidence, and helps for sure; the likeliest first
     sure = [
         one
-        for one in sorted(unknown.candidates, key=lambda one: -one.score)
+        for one in sorted(diagnosis.candidates, key=lambda one: -one.score)
         if one.physical and one.score >= VERY_STRONG and one.rows == "sliding" and one.gain.low > 0.0
     ]
+    if diagnosis.verdict not in ("nothing", "unknown-effect") or not sure:
+        return None
     progress.enter(TRYING)
     for one in progress.each(sure[:MOST_TRIED]):
-        named = replace(unknown, verdict="missing", classes=[(one.effect.name,)])
+        named = replace(diagnosis, verdict="missing", classes=[(one.effect.name,)])
         found = _forward(fit, most, named, outset)
         if len(found.added) > 1 and _leaves_nothing(found.last):
             return found

@@ -7,6 +7,7 @@ the interval. Where a test needs it to have none, its seed is one of the other n
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 
 from bench.study.diagnosis.findings import conclusion_of
@@ -22,7 +23,7 @@ from compensator.lab.model.gain import Gain
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
 from tests.lab.diagnosis.test_diagnose import PLANTED, WITH_MEMORY
-from tests.lab.synthetic import FACTS, Joint, recordings
+from tests.lab.synthetic import FACTS, Bench, Joint, Truth, plans, recordings
 
 LAWS = PLANTED | WITH_MEMORY
 
@@ -82,7 +83,7 @@ def test_what_made_up_for_a_name_that_has_given_way_is_dropped(monkeypatch, ther
     named = replace(diagnosis_of(*hidden, seed=5), verdict="missing")
     then = [
         replace(named, classes=(("position_periodic_friction",),)),
-        replace(named, verdict="nothing", remains=False),
+        replace(named, verdict="nothing", remains=False, candidates=[]),
     ]
     monkeypatch.setattr(search_module, "diagnose", lambda _: then.pop(0))
     found = search(fit_of(*hidden, seed=5), first=replace(named, classes=(("load_friction_quadratic",),)))
@@ -98,7 +99,9 @@ def test_what_was_named_last_stands_by_its_evidence_where_nothing_gave_way(monke
     """Few trials may hold all of it, as those at the highest speed do of drag."""
     named = diagnosis_of("spring", seed=5)
     monkeypatch.setattr(search_module, "predicts_better", lambda *_: False)
-    monkeypatch.setattr(search_module, "diagnose", lambda _: replace(named, verdict="nothing", remains=False))
+    monkeypatch.setattr(
+        search_module, "diagnose", lambda _: replace(named, verdict="nothing", remains=False, candidates=[])
+    )
     assert search(fit_of("spring", seed=5), first=named).added == ("spring",)
 
 
@@ -116,6 +119,22 @@ def test_two_formulas_that_leave_nothing_are_no_unknown_effect(hidden):
     found = search(fit_of(*hidden, seed=7), first=unknown)
     assert set(found.added) == (set(hidden) if len(hidden) > 1 else set())
     assert (found.last is unknown) == (len(hidden) == 1)
+
+
+def by_trial(x: Truth) -> np.ndarray:
+    """Dry friction by two quantities that are constant in a trial: either is the other one's noise, of 18 trials."""
+    return (0.12 * (x.load_kg - 0.1) - 0.002 * (x.temperature_c - 32.0)) * np.sign(x.v)
+
+
+def test_two_effects_of_whole_trials_are_found_though_neither_is_sure_alone():
+    made = recordings(Joint(extra=by_trial), Bench(duration_s=9.0), plans(repeats=2))
+    fit = fit_model(make_dataset(made, FACTS, Processing(cutoff_hz=6.0)), default_effects(FACTS))
+    first = diagnose(fit)
+    assert first.verdict == "nothing"
+    found = search(fit, first=first)
+    assert set(found.added) == {"weight_friction", "coulomb_temperature"}
+    assert found.last.verdict == "nothing"
+    assert found.last.p_value > 0.05
 
 
 def test_formulas_that_leave_something_do_not_stand_for_what_has_no_name(monkeypatch):
@@ -138,7 +157,7 @@ def test_past_a_curve_only_what_helps_for_sure_is_tried_and_only_where_two_may_b
 def test_what_was_dropped_is_not_named_again_before_the_model_has_something_else(monkeypatch):
     named, asked_without = diagnosis_of("spring", seed=7), []
     everything = {effect.name for effect in candidates(default_effects(FACTS), FACTS)}
-    then = [named, replace(named, verdict="nothing", remains=False)]
+    then = [named, replace(named, verdict="nothing", remains=False, candidates=[])]
 
     def diagnosed(_):
         asked_without.append(everything - {effect.name for effect in candidates(default_effects(FACTS), FACTS)})
