@@ -1,8 +1,8 @@
 """Values as JSON has them: what users and files give in free form, and numbers that may be unknown."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from math import nan
-from typing import Annotated, TypeAlias, Union
+from math import isfinite, nan
+from typing import Annotated, Any, TypeAlias, Union
 
 from pydantic import BeforeValidator, JsonValue, WithJsonSchema
 
@@ -27,6 +27,11 @@ def number(value: Value) -> float:
     raise TypeError(f"{value!r} is no number")
 
 
+def known(value: float) -> float | None:
+    """The same; None where it is NaN or infinite."""
+    return value if isfinite(value) else None
+
+
 def objects(value: Value) -> list[Values]:
     """A list of objects; none where there is no list."""
     return [one for one in value or () if isinstance(one, Mapping)] if isinstance(value, list | tuple | None) else []
@@ -48,16 +53,24 @@ def _known(value: object) -> object:
     return nan if value is None else value
 
 
-def _all_known(values: object) -> object:
+def _all_known(values: Any) -> object:
+    values = _plain(values)
     return [nan if one is None else one for one in values] if isinstance(values, list | tuple) else values
+
+
+def _plain(values: Any) -> Any:
+    return values.tolist() if hasattr(values, "tolist") else values
 
 
 Number = Annotated[float, BeforeValidator(_known), WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "null"}]})]
 """NaN in Python, null in JSON, where it is not known."""
+
+OfArray = BeforeValidator(_plain)
+"""A list that may be given as an array."""
 
 Numbers = Annotated[
     list[float],
     BeforeValidator(_all_known),
     WithJsonSchema({"type": "array", "items": {"anyOf": [{"type": "number"}, {"type": "null"}]}}),
 ]
-"""A list of the same."""
+"""A list or array of the same."""

@@ -1,7 +1,6 @@
 """The catalogue of effects, and a small simulated example of each."""
 
-import numpy as np
-
+from bench.json_types import known
 from bench.store.errors import NotFoundError
 from bench.study.models.effects import Effect, EffectParameter, Example, ExampleTrial, LeftOutEffect
 from compensator.lab.effects import effect as lab
@@ -17,7 +16,7 @@ def effects_catalogue() -> list[Effect]:
 
 def effects_left_out() -> list[LeftOutEffect]:
     """What installed packages offer and is broken, each with the reason."""
-    return [LeftOutEffect(package=x.package, entry_point=x.entry_point, reason=x.reason) for x in left_out()]
+    return list(map(LeftOutEffect.model_validate, left_out()))
 
 
 def effect_example(name: str) -> Example:
@@ -36,37 +35,15 @@ def effect_example(name: str) -> Example:
         effort_unit=found.effort_unit,
         driver=found.driver_title,
         driver_unit=found.driver_unit,
-        trials=[
-            ExampleTrial(
-                load_kg=trial.load_kg,
-                time_s=trial.time_s.tolist(),
-                driver=trial.driver.tolist(),
-                without=trial.without.tolist(),
-                effect=trial.effect.tolist(),
-            )
-            for trial in found.trials
-        ],
+        trials=list(map(ExampleTrial.model_validate, found.trials)),
     )
 
 
 def _effect(effect: lab.Effect) -> Effect:
-    return Effect(
-        name=effect.name,
-        title=effect.title,
-        physics=effect.physics,
-        equation=effect.equation,
-        parameters=[
-            EffectParameter(
-                name=parameter.name,
-                unit=parameter.unit_in("effort", "position"),
-                low=parameter.low if np.isfinite(parameter.low) else None,
-                high=parameter.high if np.isfinite(parameter.high) else None,
-            )
-            for parameter in effect.parameters
-        ],
-        driver=effect.driver,
-        channels=list(effect.channels),
-        excited_by=effect.excited_by,
-        confused_with=list(effect.confused_with),
-        source=effect.source,
+    parameters = [
+        EffectParameter(name=one.name, unit=one.unit_in("effort", "position"), low=known(one.low), high=known(one.high))
+        for one in effect.parameters
+    ]
+    return Effect.model_validate(
+        {name: getattr(effect, name) for name in Effect.model_fields} | {"parameters": parameters}
     )

@@ -70,15 +70,7 @@ def _sentence(effects: Sequence[Judgeable], advice: Sequence[Advice]) -> str:
 
 
 def _judged(one: Judgeable) -> JudgedEffect:
-    effect = one.effect
-    return JudgedEffect(
-        effect=effect.name,
-        title=effect.title,
-        standing=one.standing,
-        reason=one.reason,
-        rivals=list(one.rivals),
-        smallest=one.smallest,
-    )
+    return JudgedEffect.model_validate(vars(one) | {"effect": one.effect.name, "title": one.effect.title})
 
 
 def _held(

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 
 from bench.store import Store
 from bench.study.errors import StudyError, lab_errors
@@ -61,15 +62,8 @@ def action(store: Store, study_id: int, effect: str, model_id: int | None = None
 
 
 def _moment(material: Material, one: lab.Moment) -> Moment:
-    return Moment(
-        trial_id=material.trials[one.trial].id,
-        name=material.trials[one.trial].name,
-        from_s=one.from_s,
-        to_s=one.to_s,
-        rows=one.rows,
-        rms=one.rms,
-        mean=one.mean,
-    )
+    trial = material.trials[one.trial]
+    return Moment.model_validate(asdict(one) | {"trial_id": trial.id, "name": trial.name})
 
 
 def _parse(text: str) -> tuple[str, tuple[float, float]]:
