@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite, nan
-from typing import Annotated, Any, TypeAlias, Union
+from typing import Annotated, TypeAlias, Union
 
 from pydantic import BeforeValidator, JsonValue, WithJsonSchema
 
@@ -53,24 +53,16 @@ def _known(value: object) -> object:
     return nan if value is None else value
 
 
-def _all_known(values: Any) -> object:
-    values = _plain(values)
+def _all_known(values: object) -> object:
     return [nan if one is None else one for one in values] if isinstance(values, list | tuple) else values
-
-
-def _plain(values: Any) -> Any:
-    return values.tolist() if hasattr(values, "tolist") else values
 
 
 Number = Annotated[float, BeforeValidator(_known), WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "null"}]})]
 """NaN in Python, null in JSON, where it is not known."""
-
-OfArray = BeforeValidator(_plain)
-"""A list that may be given as an array."""
 
 Numbers = Annotated[
     list[float],
     BeforeValidator(_all_known),
     WithJsonSchema({"type": "array", "items": {"anyOf": [{"type": "number"}, {"type": "null"}]}}),
 ]
-"""A list or array of the same."""
+"""A list of the same."""

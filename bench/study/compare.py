@@ -1,6 +1,5 @@
 """Measured against predicted, for the page, the command line and reports."""
 
-from dataclasses import asdict
 from math import isnan
 from typing import Literal
 
@@ -57,7 +56,11 @@ def compare(store: Store, study_id: int, model_id: int | None = None) -> Compari
         effects=model.effects,
         parameters=fitted_parameters(parameters),
         effort=material.effort,
-        error=Errors.model_validate(found),
+        error=Errors(
+            training=Error.model_validate(found.training),
+            held_out=Error.model_validate(found.held_out),
+            floor=Error.model_validate(found.floor) if found.floor else None,
+        ),
         trials=_trials(material, found),
         regimes=[RegimeError.model_validate(one) for one in found.regimes],
         at_rest=_at_rest(found),
@@ -85,7 +88,14 @@ def _at_rest(found: comparison.Comparison) -> AtRest | None:
 
 
 def _beyond(name: Literal["above", "below"], side: Side) -> BeyondFriction:
-    return BeyondFriction.model_validate(asdict(side) | {"side": name, "p_value": stated(side.chance)})
+    return BeyondFriction(
+        side=name,
+        outside=side.outside,
+        largest=side.largest,
+        p_value=stated(side.chance),
+        trial=side.trial,
+        time_s=side.time_s,
+    )
 
 
 def _breakaway(found: comparison.Comparison) -> BreakawayError | None:
@@ -102,7 +112,18 @@ def _breakaway(found: comparison.Comparison) -> BreakawayError | None:
 
 def fitted_parameters(found: list[ParameterEstimate]) -> list[FittedParameter]:
     """Estimates as an answer has them."""
-    return [FittedParameter.model_validate(asdict(one) | {"name": one.parameter}) for one in found]
+    return [
+        FittedParameter(
+            effect=one.effect,
+            name=one.parameter,
+            value=one.value,
+            unit=one.unit,
+            low=one.low,
+            high=one.high,
+            note=one.note,
+        )
+        for one in found
+    ]
 
 
 def _trials(material: Material, found: comparison.Comparison) -> list[TrialError]:
@@ -115,8 +136,17 @@ def _trials(material: Material, found: comparison.Comparison) -> list[TrialError
 def _against(material: Material, found: comparison.Comparison) -> list[ResidualAgainst]:
     by_driver: dict[str, list[DriverGroup]] = {}
     for one in found.against:
-        group = DriverGroup.model_validate(asdict(one.bins) | {"direction": one.direction})
-        by_driver.setdefault(one.driver, []).append(group)
+        bins = one.bins
+        by_driver.setdefault(one.driver, []).append(
+            DriverGroup(
+                direction=one.direction,
+                x=bins.x.tolist(),
+                mean=bins.mean.tolist(),
+                low=bins.low.tolist(),
+                high=bins.high.tolist(),
+                count=bins.count.tolist(),
+            )
+        )
     unit = material.dataset.effort_definition.unit
     facts = material.definition.facts
     return [

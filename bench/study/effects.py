@@ -16,7 +16,7 @@ def effects_catalogue() -> list[Effect]:
 
 def effects_left_out() -> list[LeftOutEffect]:
     """What installed packages offer and is broken, each with the reason."""
-    return list(map(LeftOutEffect.model_validate, left_out()))
+    return [LeftOutEffect(package=x.package, entry_point=x.entry_point, reason=x.reason) for x in left_out()]
 
 
 def effect_example(name: str) -> Example:
@@ -35,15 +35,37 @@ def effect_example(name: str) -> Example:
         effort_unit=found.effort_unit,
         driver=found.driver_title,
         driver_unit=found.driver_unit,
-        trials=list(map(ExampleTrial.model_validate, found.trials)),
+        trials=[
+            ExampleTrial(
+                load_kg=trial.load_kg,
+                time_s=trial.time_s.tolist(),
+                driver=trial.driver.tolist(),
+                without=trial.without.tolist(),
+                effect=trial.effect.tolist(),
+            )
+            for trial in found.trials
+        ],
     )
 
 
 def _effect(effect: lab.Effect) -> Effect:
-    parameters = [
-        EffectParameter(name=one.name, unit=one.unit_in("effort", "position"), low=known(one.low), high=known(one.high))
-        for one in effect.parameters
-    ]
-    return Effect.model_validate(
-        {name: getattr(effect, name) for name in Effect.model_fields} | {"parameters": parameters}
+    return Effect(
+        name=effect.name,
+        title=effect.title,
+        physics=effect.physics,
+        equation=effect.equation,
+        parameters=[
+            EffectParameter(
+                name=parameter.name,
+                unit=parameter.unit_in("effort", "position"),
+                low=known(parameter.low),
+                high=known(parameter.high),
+            )
+            for parameter in effect.parameters
+        ],
+        driver=effect.driver,
+        channels=list(effect.channels),
+        excited_by=effect.excited_by,
+        confused_with=list(effect.confused_with),
+        source=effect.source,
     )

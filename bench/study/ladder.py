@@ -63,4 +63,9 @@ def _rung(model: ModelRow, parent: ModelRow | None) -> Rung:
 def _motion(kept: KeptMotion) -> RungMotion:
     """Error of the position in closed loop: held out, or of the training trials where there are too few."""
     error = kept.held_out or kept.training
-    return RungMotion.model_validate(dict(error) | {"unit": kept.position_unit})
+    return RungMotion(
+        position=error.position,
+        position_relative=error.position_relative,
+        effort_relative=error.effort_relative,
+        unit=kept.position_unit,
+    )

@@ -70,7 +70,15 @@ def _sentence(effects: Sequence[Judgeable], advice: Sequence[Advice]) -> str:
 
 
 def _judged(one: Judgeable) -> JudgedEffect:
-    return JudgedEffect.model_validate(vars(one) | {"effect": one.effect.name, "title": one.effect.title})
+    effect = one.effect
+    return JudgedEffect(
+        effect=effect.name,
+        title=effect.title,
+        standing=one.standing,
+        reason=one.reason,
+        rivals=list(one.rivals),
+        smallest=one.smallest,
+    )
 
 
 def _held(

@@ -1,10 +1,10 @@
 """Measured against predicted. Errors are shares (0..1) where the name says `relative`; all else is SI."""
 
-from typing import Annotated, Literal
+from typing import Literal
 
 from pydantic import Field
 
-from bench.json_types import Number, Numbers, OfArray
+from bench.json_types import Number, Numbers
 from bench.study.models.base import LEAST_P, EffortName, StudyModel
 from bench.study.models.diagnosis import Finding
 from bench.study.models.study import StudyTrial
@@ -73,7 +73,7 @@ class DriverGroup(StudyModel):
     mean: Numbers
     low: Numbers
     high: Numbers
-    count: Annotated[list[int], OfArray]
+    count: list[int]
 
 
 class ResidualAgainst(StudyModel):

@@ -1,10 +1,8 @@
 """The effects of the catalogue, and an example of each."""
 
-from typing import Annotated
-
 from pydantic import Field
 
-from bench.json_types import Numbers, OfArray
+from bench.json_types import Numbers
 from bench.study.models.base import StudyModel
 
 
@@ -44,10 +42,10 @@ class ExampleTrial(StudyModel):
     """One swing of the simulated joint; all lists have the same length."""
 
     load_kg: float
-    time_s: Annotated[list[float], OfArray]
+    time_s: list[float]
     driver: Numbers
-    without: Annotated[list[float], OfArray] = Field(description="effort without the effect")
-    effect: Annotated[list[float], OfArray] = Field(description="what the effect adds; add any multiple of it")
+    without: list[float] = Field(description="effort without the effect")
+    effect: list[float] = Field(description="what the effect adds; add any multiple of it")
 
 
 class Example(StudyModel):

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
 
 from bench.store import Store
 from bench.study.errors import StudyError, lab_errors
@@ -62,8 +61,15 @@ def action(store: Store, study_id: int, effect: str, model_id: int | None = None
 
 
 def _moment(material: Material, one: lab.Moment) -> Moment:
-    trial = material.trials[one.trial]
-    return Moment.model_validate(asdict(one) | {"trial_id": trial.id, "name": trial.name})
+    return Moment(
+        trial_id=material.trials[one.trial].id,
+        name=material.trials[one.trial].name,
+        from_s=one.from_s,
+        to_s=one.to_s,
+        rows=one.rows,
+        rms=one.rms,
+        mean=one.mean,
+    )
 
 
 def _parse(text: str) -> tuple[str, tuple[float, float]]:
