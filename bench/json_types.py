@@ -1,7 +1,7 @@
 """Values as JSON has them: what users and files give in free form, and numbers that may be unknown."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from math import nan
+from math import isfinite, nan
 from typing import Annotated, TypeAlias, Union
 
 from pydantic import BeforeValidator, JsonValue, WithJsonSchema
@@ -25,6 +25,11 @@ def number(value: Value) -> float:
     if isinstance(value, int | float):
         return value
     raise TypeError(f"{value!r} is no number")
+
+
+def known(value: float) -> float | None:
+    """The same; None where it is NaN or infinite."""
+    return value if isfinite(value) else None
 
 
 def objects(value: Value) -> list[Values]:

@@ -4,33 +4,26 @@ from collections.abc import Iterable, Mapping
 from html import escape
 from typing import Any
 
-LONGEST = 80  # characters of a cell
+from bench.study.models import base
+
 SHOWN_ROWS = 20
 
 
-def short(value: Any) -> str:
-    """A cell: short numbers, what is inside of lists and tables only counted."""
-    if isinstance(value, float):
-        return f"{value:.4g}"
+def short(value: object) -> str:
+    """As in the answers of a study; of tables only the names."""
     if isinstance(value, Mapping):
         return "{" + ", ".join(map(str, value)) + "}" if value else "-"
-    if isinstance(value, list):
-        return f"[{len(value)}]"
-    text = "-" if value is None or value == "" else str(value)
-    return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+    return base.short(value)
 
 
 class Answer(dict[str, Any]):
     """One answer; a dict, as the interface describes it."""
 
     def __repr__(self) -> str:
-        if sentence := self.get("sentence"):
-            return f"<{sentence}>"
-        return "<" + ", ".join(f"{name}={short(value)}" for name, value in self.items()) + ">"
+        return base.in_a_line(self, short)
 
     def _repr_html_(self) -> str:
-        rows = "".join(f"<tr><th>{escape(name)}</th><td>{escape(short(self[name]))}</td></tr>" for name in self)
-        return f"<table>{rows}</table>"
+        return base.as_table(self, short)
 
 
 class Answers(list[Answer]):

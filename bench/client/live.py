@@ -6,12 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.client.connection import Connection
 from bench.client.errors import Unreachable
+from compensator.lab.recordings.recording import FloatArray
 
-FloatArray = NDArray[np.float64]
 PAUSE_S = 0.5
 MOST_SILENT_TRIES = 20  # in a row; then the service is gone
 

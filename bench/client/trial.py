@@ -5,12 +5,10 @@ import io
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.client.answer import Answer
 from bench.client.connection import Connection
-
-FloatArray = NDArray[np.float64]
+from compensator.lab.recordings.recording import FloatArray
 
 
 class Trial:

@@ -1,6 +1,6 @@
 """The load that a motor current reflects, by the torque constant, the gear ratio and the lever of the rig."""
 
-from math import copysign, sin
+from math import copysign, pi, sin
 
 from bench.config.rig import Rig
 from bench.errors import ConfigurationError
@@ -33,6 +33,11 @@ def load_current_a(load_kg: float, angle_rad: float, rig: Rig) -> float:
     torque_n_m_a, length_m = _lever(rig)
     moment_kg_m = load_kg * length_m + _own_moment_kg_m(rig)
     return moment_kg_m * STANDARD_GRAVITY_M_S2 * sin(angle_rad) / torque_n_m_a
+
+
+def per_kg_a(rig: Rig) -> float:
+    """Current that a kilogram more takes at 90 degrees [A/kg]. Errors as `load_current_a`."""
+    return load_current_a(1.0, pi / 2, rig) - load_current_a(0.0, pi / 2, rig)
 
 
 def arm_angle_rad(position_rad: float, load_current_a: float, rig: Rig) -> float:

@@ -107,6 +107,12 @@ class RetentionSettings(Section):
     simulated_days: float | None = quantity(None, "days", "Those of a simulated drive, however they ended", gt=0)
     audit_days: float | None = quantity(None, "days", "Entries of the audit log", gt=0)
 
+    def keeps_days(self, outcome: str, source: str) -> float | None:
+        """How long an experiment is kept [days]; the shortest where several apply, None: for ever."""
+        limits = [self.completed_days if outcome == "completed" else self.incomplete_days]
+        limits.append(self.simulated_days if source == "simulated" else None)
+        return min((limit for limit in limits if limit is not None), default=None)
+
 
 class StoreSettings(Section):
     """Where the trials are kept."""

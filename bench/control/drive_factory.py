@@ -84,5 +84,10 @@ def seed_of(configuration: BenchConfiguration) -> int | None:
     return drive.seed if isinstance(drive, SimulatedDriveSettings) else None
 
 
+def with_seed(configuration: BenchConfiguration, seed: int) -> BenchConfiguration:
+    """The same bench, with another seed of its simulated drive."""
+    return configuration.model_copy(update={"drive": configuration.drive.model_copy(update={"seed": seed})})
+
+
 def _technician(settings: RealDriveSettings, ask: Ask) -> Technician:
     return SimulatedTechnician(FarJoint(settings.side_channel)) if settings.side_channel else PersonTechnician(ask)

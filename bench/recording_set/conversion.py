@@ -5,16 +5,14 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.formats.column_table import ColumnTable
 from bench.recording_set.mapping import SPEED_UNITS, Column, Mapping
 from bench.recording_set.text.columns import TIME, Plan, plan
 from bench.recording_set.text.stamps import NoStamp, seconds_of
-from compensator.lab.recordings.recording import FloatArray
+from compensator.lab.recordings.recording import FloatArray, IntArray
 
-IntArray = NDArray[np.int64]
 CLOCK_S = 1e6  # a trial that begins so late tells the time of a clock
 RESTART = 0.5  # of the time that passed: a clock that falls back by so much began anew
 

@@ -1,5 +1,8 @@
 """Errors of recording sets."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from bench.errors import BenchError
 
 
@@ -28,3 +31,23 @@ class RecordingSetError(BenchError, ValueError):
         self.file = file
         self.line = line
         self.column = column
+
+
+@contextmanager
+def needed(place: str, package: str, extra: str, otherwise: str) -> Iterator[None]:
+    """Around the import of a package that is not installed with ours.
+
+    Args:
+        place: what cannot be read or written without it.
+        package: its name.
+        extra: of ours that installs it.
+        otherwise: what to do without it.
+
+    Raises:
+        RecordingSetError: it is not installed.
+    """
+    try:
+        yield
+    except ImportError as error:
+        how = f"install it with: pip install 'friction-bench[{extra}]', or {otherwise}"
+        raise RecordingSetError(place, f"needs {package}; {how}") from error

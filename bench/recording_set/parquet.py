@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.errors import needed
 from bench.recording_set.stream import Piece, RecordingStream
 from bench.recording_set.text.values import encode_events
 from compensator.lab.recordings.recording import EVENT_COLUMN, Condition
@@ -31,7 +31,9 @@ def parquet_chunks(streams: Sequence[RecordingStream]) -> Iterator[bytes]:
     Raises:
         RecordingSetError: pyarrow is not installed. Raised here, not when the first chunk is asked for.
     """
-    return _chunks(_pyarrow(), streams)
+    with needed("Parquet", "pyarrow", "parquet", "export CSV"):
+        import pyarrow
+    return _chunks(pyarrow, streams)
 
 
 def _chunks(pa: ModuleType, streams: Sequence[RecordingStream]) -> Iterator[bytes]:
@@ -124,13 +126,3 @@ class _Written(io.RawIOBase):
     def take(self) -> bytes:
         parts, self._parts = self._parts, []
         return b"".join(parts)
-
-
-def _pyarrow() -> ModuleType:
-    try:
-        import pyarrow
-    except ImportError as error:
-        raise RecordingSetError(
-            "Parquet", "needs pyarrow; install it with: pip install 'friction-bench[parquet]', or export CSV"
-        ) from error
-    return pyarrow  # type: ignore[no-any-return]

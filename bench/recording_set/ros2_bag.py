@@ -1,13 +1,13 @@
 """ROS 2 bags (MCAP) with `sensor_msgs/JointState`: one joint of a bag is one trial."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 
 from bench.config.rig import Rig
-from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.errors import RecordingSetError, needed
 from bench.recording_set.recording_set import RecordingSet
 from compensator.lab.recordings.recording import Recording
 
@@ -84,12 +84,14 @@ def _recording(file: Path, joint: str, effort: str, topic: str) -> Recording:
 
 def _states(file: Path, joint: str, topic: str) -> Iterator[JointState]:
     """The states of a joint, in the order of the log."""
-    make_reader, decoder = _mcap()
+    with needed("ROS 2 bag", "mcap-ros2-support", "ros2", "import CSV"):
+        from mcap.reader import make_reader
+        from mcap_ros2.decoder import DecoderFactory
     others: set[str] = set()
     found_joint = False
     try:
         with file.open("rb") as stream:
-            reader = make_reader(stream, decoder_factories=[decoder()])
+            reader = make_reader(stream, decoder_factories=[DecoderFactory()])
             chosen = topic or _only_topic(file, reader.get_summary())
             for _, _, logged, message in reader.iter_decoded_messages(topics=[chosen]):
                 others.update(message.name)
@@ -126,14 +128,3 @@ def _state(message: _Message, place: int, logged_ns: int) -> JointState:
     parts = (message.position, message.velocity, message.effort)
     values = (float(part[place]) if place < len(part) else np.nan for part in parts)
     return JointState(time_s or 1e-9 * logged_ns, *values)
-
-
-def _mcap() -> tuple[Callable[..., Any], Callable[[], Any]]:
-    try:
-        from mcap.reader import make_reader
-        from mcap_ros2.decoder import DecoderFactory
-    except ImportError as error:
-        raise RecordingSetError(
-            "ROS 2 bag", "needs mcap-ros2-support; install it with: pip install 'friction-bench[ros2]', or import CSV"
-        ) from error
-    return make_reader, DecoderFactory

@@ -10,6 +10,7 @@ import numpy as np
 from bench.config.channels import RECORDED, known_to_lab
 from bench.config.configuration import BenchConfiguration
 from bench.control.clock import VirtualClock
+from bench.control.cycle import Procedure
 from bench.control.drive_factory import Equipment
 from bench.control.ending import StopRequest
 from bench.control.limits import Guard
@@ -17,6 +18,7 @@ from bench.control.loop import joint_loop
 from bench.control.servo import current_servo
 from bench.errors import ExperimentError
 from bench.experiments.kind import TrialPlan
+from bench.json_types import Value
 from bench.runs.session import CONDITION, Session
 from compensator.lab.recordings.recording import Event, FloatArray, Recording
 
@@ -55,18 +57,23 @@ class InMemoryBench:
         self._equipment.drive.close()
 
     def record(self, plan: TrialPlan, kind: str) -> Recording:
-        """Run one trial.
+        """Run one trial. Errors as `run`."""
+        _, kept = self.run(plan, plan.procedure())
+        conditions = {**plan.conditions, CONDITION: self._session.seconds()}
+        self._session.passed(self._loop.last_reading.time_s if self._loop.last_reading else 0.0)
+        columns = kept.channels()
+        measured = {name: columns[name] for name in known_to_lab(columns) if not np.isnan(columns[name]).all()}
+        return Recording(plan.name, kind, conditions, measured, kept.events)
+
+    def run(self, plan: TrialPlan, procedure: Procedure) -> tuple[dict[str, Value], Memory]:
+        """Run one trial by its procedure, or by one round it: its results, and what was recorded.
 
         Raises:
             ExperimentError: it did not complete; why is told.
         """
         self._equipment.technician.hang_load(plan.load_kg, plan.balanced)
         kept = Memory()
-        outcome = self._loop.run(plan.procedure(), kept, StopRequest())
+        outcome = self._loop.run(procedure, kept, StopRequest())
         if outcome.outcome != "completed":
             raise ExperimentError(f"trial '{plan.name}': {outcome.outcome}: {outcome.reason}")
-        conditions = {**plan.conditions, CONDITION: self._session.seconds()}
-        self._session.passed(self._loop.last_reading.time_s if self._loop.last_reading else 0.0)
-        columns = kept.channels()
-        measured = {name: columns[name] for name in known_to_lab(columns) if not np.isnan(columns[name]).all()}
-        return Recording(plan.name, kind, conditions, measured, kept.events)
+        return outcome.results, kept

@@ -4,9 +4,8 @@ import threading
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from compensator.lab.recordings.recording import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

@@ -69,13 +69,10 @@ class Asker:
 class Lab(Protocol):
     """Calls functions that take the store first; each waits for its result."""
 
-    def call(self, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs) -> T:
-        """The function's result. `args` and `kwargs` are those after the store."""
-
     def call_for(
         self, asker: Asker, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs
     ) -> T:
-        """The same for somebody who may give it up.
+        """The function's result, for somebody who may give it up. `args` and `kwargs` are those after the store.
 
         Raises:
             LabEndedError: they have.
@@ -90,10 +87,6 @@ class LabHere:
 
     def __init__(self, store: Store) -> None:
         self._store = store
-
-    def call(self, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs) -> T:
-        """See `Lab`."""
-        return function(self._store, *args, **kwargs)
 
     def call_for(
         self, asker: Asker, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs
@@ -116,18 +109,14 @@ class LabProcesses:
         self._lock = threading.Lock()
         self._closed = False
 
-    def call(self, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs) -> T:
-        """See `Lab`.
-
-        Raises:
-            LabEndedError: its process ended meanwhile; the next call starts another one.
-        """
-        return self.call_for(Asker(), function, *args, **kwargs)
-
     def call_for(
         self, asker: Asker, function: Callable[Concatenate[Store, P], T], /, *args: P.args, **kwargs: P.kwargs
     ) -> T:
-        """See `Lab`."""
+        """See `Lab`.
+
+        Raises:
+            LabEndedError: also where its process ended meanwhile; the next call starts another one.
+        """
         worker = self._take()
         try:
             with asker.waiting(worker.end):

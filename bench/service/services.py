@@ -1,6 +1,6 @@
-"""What the routes lean on: the store and the runner of this application, as FastAPI dependencies."""
+"""What the routes lean on: what the application keeps, as FastAPI dependencies."""
 
-from typing import Annotated, cast
+from typing import Annotated, Any
 
 from fastapi import Depends, Request
 
@@ -12,33 +12,18 @@ from bench.runs.queue.conductor import Conductor
 from bench.store import Store
 
 
-async def _store(request: Request) -> Store:
-    return cast(Store, request.app.state.store)
+def _kept(name: str) -> Any:
+    """A dependency that finds what the application keeps under a name. Async: a plain one would wait for a thread."""
+
+    async def found(request: Request) -> Any:
+        return getattr(request.app.state, name)
+
+    return Depends(found)
 
 
-async def _runner(request: Request) -> BenchControl:
-    return cast(BenchControl, request.app.state.runner)
-
-
-async def _conductor(request: Request) -> Conductor:
-    return cast(Conductor, request.app.state.conductor)
-
-
-async def _calibrator(request: Request) -> Calibrator:
-    return cast(Calibrator, request.app.state.calibrator)
-
-
-async def _lab_link(request: Request) -> LabLink:
-    return cast(LabLink, request.app.state.lab_link)
-
-
-async def _guide(request: Request) -> Guide:
-    return cast(Guide, request.app.state.guide)
-
-
-StoreOf = Annotated[Store, Depends(_store)]
-RunnerOf = Annotated[BenchControl, Depends(_runner)]
-ConductorOf = Annotated[Conductor, Depends(_conductor)]
-CalibratorOf = Annotated[Calibrator, Depends(_calibrator)]
-LabLinkOf = Annotated[LabLink, Depends(_lab_link)]
-GuideOf = Annotated[Guide, Depends(_guide)]
+StoreOf = Annotated[Store, _kept("store")]
+RunnerOf = Annotated[BenchControl, _kept("runner")]
+ConductorOf = Annotated[Conductor, _kept("conductor")]
+CalibratorOf = Annotated[Calibrator, _kept("calibrator")]
+LabLinkOf = Annotated[LabLink, _kept("lab_link")]
+GuideOf = Annotated[Guide, _kept("guide")]

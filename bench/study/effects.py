@@ -1,7 +1,6 @@
 """The catalogue of effects, and a small simulated example of each."""
 
-import numpy as np
-
+from bench.json_types import known
 from bench.store.errors import NotFoundError
 from bench.study.models.effects import Effect, EffectParameter, Example, ExampleTrial, LeftOutEffect
 from compensator.lab.effects import effect as lab
@@ -59,8 +58,8 @@ def _effect(effect: lab.Effect) -> Effect:
             EffectParameter(
                 name=parameter.name,
                 unit=parameter.unit_in("effort", "position"),
-                low=parameter.low if np.isfinite(parameter.low) else None,
-                high=parameter.high if np.isfinite(parameter.high) else None,
+                low=known(parameter.low),
+                high=known(parameter.high),
             )
             for parameter in effect.parameters
         ],

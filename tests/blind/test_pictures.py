@@ -1,8 +1,8 @@
 from pathlib import Path
 
-from bench.evaluation.blind.calibration import interval
 from bench.evaluation.blind.pictures import sections_of, write_page
 from bench.evaluation.blind.result import LabAnswer, Result, Standing
+from bench.evaluation.figures.coverage import Share
 
 
 def _complete(key: str, p_value: float) -> Result:
@@ -30,7 +30,7 @@ def test_stated_and_observed_are_drawn_with_their_intervals() -> None:
     shares = dict(zip(points.x, points.y, strict=True))
     assert shares[0.01] == 0.0
     assert shares[0.05] == 0.25
-    assert points.high[0] == interval(0, 8)[1]
+    assert points.high[0] == Share(0, 8).interval()[1]
     assert dict(zip(names.drawn[0].x, names.drawn[0].y, strict=True)) == {2.0: 0.0, 7.0: 1.0}
 
 

@@ -19,9 +19,10 @@ from tempfile import TemporaryDirectory
 from scipy.stats import binom
 
 from bench.config.configuration import BenchConfiguration, default_configuration
+from bench.control.drive_factory import with_seed
 from bench.evaluation.figures.coverage import Share, held
 from bench.evaluation.figures.measure import APART, CALIBRATION_SEED, RIG_SEED
-from bench.evaluation.figures.rigs import drawn_rig, with_seed
+from bench.evaluation.figures.rigs import drawn_rig
 from bench.evaluation.figures.trials import AT_REST, RIGHT_ANGLE_RAD, calibrated_at_rest, drawn_loads
 from bench.evaluation.paper.measurements import Measurement, measure, quietly
 from bench.store import Store

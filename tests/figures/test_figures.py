@@ -8,10 +8,11 @@ import pytest
 from bench.config.configuration import default_configuration
 from bench.config.reflected_load import load_current_a
 from bench.config.sections import RestSettings
+from bench.control.drive_factory import with_seed
 from bench.evaluation.figures import rigs
 from bench.evaluation.figures.bounds import SLACK, rest_bound_g, stroke_bound_g
 from bench.evaluation.figures.coverage import Share, median_interval, reached_by_most, true_load_a
-from bench.evaluation.figures.rigs import drawn_rig, with_seed
+from bench.evaluation.figures.rigs import drawn_rig
 from bench.evaluation.figures.table import COLUMNS, figures_table
 from bench.evaluation.figures.trials import SeedResults, calibrated, calibrated_at_rest, drawn_loads
 from sim_backend.plant.presets import paper

@@ -82,22 +82,23 @@ def lab_processes() -> set[int]:
 
 
 def test_it_answers_as_the_lab_of_this_process_does(lab, store, experiment_id):
-    found = lab.call(create_study, "arm", [experiment_id], hold_out=["repeat=2"])
+    found = lab.call_for(Asker(), create_study, "arm", [experiment_id], hold_out=["repeat=2"])
     here = LabHere(store)
-    assert lab.call(study_names) == here.call(study_names)
+    assert lab.call_for(Asker(), study_names) == here.call_for(Asker(), study_names)
     study_id = found.study_id
-    assert lab.call(compare, study_id).model_dump_json() == here.call(compare, study_id).model_dump_json()
+    theirs, ours = (one.call_for(Asker(), compare, study_id) for one in (lab, here))
+    assert theirs.model_dump_json() == ours.model_dump_json()
 
 
 def test_its_errors_are_those_of_the_lab(lab):
     with pytest.raises(NotFoundError, match="99"):
-        lab.call(describe, 99)
-    assert lab.call(study_names) is not None  # the process goes on
+        lab.call_for(Asker(), describe, 99)
+    assert lab.call_for(Asker(), study_names) is not None  # the process goes on
 
 
 def test_it_lets_other_programs_go_first_and_is_used_again(lab, others):
-    lab.call(study_names)
-    lab.call(study_names)
+    lab.call_for(Asker(), study_names)
+    lab.call_for(Asker(), study_names)
     (process,) = lab_processes() - others
     ours = os.getpriority(os.PRIO_PROCESS, 0)
     assert os.getpriority(os.PRIO_PROCESS, process) == min(ours + NICENESS, 19)
@@ -106,25 +107,25 @@ def test_it_lets_other_programs_go_first_and_is_used_again(lab, others):
 
 
 def test_one_that_was_killed_is_said_and_another_one_answers(lab, others):
-    lab.call(study_names)
+    lab.call_for(Asker(), study_names)
     (process,) = lab_processes() - others
     os.kill(process, signal.SIGKILL)
     wait_for(lambda: process not in lab_processes(), 10.0)
     with pytest.raises(LabEndedError, match="ask again"):
-        lab.call(study_names)
-    assert lab.call(study_names)
+        lab.call_for(Asker(), study_names)
+    assert lab.call_for(Asker(), study_names)
 
 
 def test_the_end_of_the_service_does_not_wait_for_a_search(url, store, experiment_id):
     lab = LabProcesses(url)
-    study_id = LabHere(store).call(create_study, "long", [experiment_id], hold_out=["repeat=2"]).study_id
+    study_id = LabHere(store).call_for(Asker(), create_study, "long", [experiment_id], hold_out=["repeat=2"]).study_id
     before = lab_processes()
     ended = []
 
     def search() -> None:
         try:
             while True:
-                lab.call(diagnose, study_id)
+                lab.call_for(Asker(), diagnose, study_id)
         except LabEndedError:
             ended.append(True)
 
@@ -136,7 +137,7 @@ def test_the_end_of_the_service_does_not_wait_for_a_search(url, store, experimen
     assert ended
     assert not lab_processes() - before
     with pytest.raises(LabEndedError, match="ending"):
-        lab.call(study_names)
+        lab.call_for(Asker(), study_names)
 
 
 def test_what_is_given_up_is_ended_and_the_next_call_is_answered(lab, others):
@@ -156,10 +157,10 @@ def test_what_is_given_up_is_ended_and_the_next_call_is_answered(lab, others):
     assert not thread.is_alive()
     assert len(failures) == 1
     assert lab_processes() <= others
-    assert lab.call(study_names)
+    assert lab.call_for(Asker(), study_names)
     with pytest.raises(LabEndedError, match="has gone"):
         lab.call_for(asker, study_names)  # nor does it begin
-    assert lab.call(study_names)
+    assert lab.call_for(Asker(), study_names)
 
 
 def sleeping(_store: Store, time_s: float) -> None:
@@ -201,8 +202,8 @@ def all_memory(_store):
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems bound less")
 def test_one_that_wants_all_memory_is_refused_it_in_words(lab):
     with pytest.raises(LabEndedError, match="more memory"):
-        lab.call(all_memory)
-    assert lab.call(study_names) is not None
+        lab.call_for(Asker(), all_memory)
+    assert lab.call_for(Asker(), study_names) is not None
 
 
 def test_files_of_others_are_read_by_the_lab(tmp_path, monkeypatch):

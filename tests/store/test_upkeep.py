@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from sqlalchemy import text, update
 
+from bench.config.sections import RetentionSettings
 from bench.store import Store
 from bench.store.errors import StoreFileError, StoreFullError, StoreStateError
 from bench.store.schema import EXPERIMENT
 from bench.store.tables import chain
 from bench.store.tables.samples import damaged_blocks
-from bench.store.upkeep.retention import Policy
 from bench.store.upkeep.space import SpaceNeed
 from tests.databases import PostgresqlServer
 from tests.store.examples import begin, begin_trial, rows
@@ -110,7 +110,7 @@ def test_the_policy_keeps_by_outcome_source_and_age(store: Store) -> None:
     expired = store.retention.expired
 
     def found(**policy: float) -> list[int]:
-        return [one.experiment_id for one in expired(Policy(**policy))]
+        return [one.experiment_id for one in expired(RetentionSettings(**policy))]
 
     assert found() == []
     assert found(completed_days=30) == [old]
@@ -118,7 +118,7 @@ def test_the_policy_keeps_by_outcome_source_and_age(store: Store) -> None:
     assert found(simulated_days=5) == [simulated]
     assert found(completed_days=0.5, incomplete_days=0.5) == [old, young, failed, simulated]
     assert running not in found(completed_days=1e-9, incomplete_days=1e-9)
-    assert expired(Policy(completed_days=30))[0].size_bytes == 100 * 3 * 8
+    assert expired(RetentionSettings(completed_days=30))[0].size_bytes == 100 * 3 * 8
     assert len(store.experiments()) == 5  # to look removes nothing
 
 
@@ -128,7 +128,7 @@ def test_what_a_study_or_a_calibration_uses_is_told(store: Store) -> None:
     store.create_study("gear 12", {"trial_ids": [trial.id]})
     calibration = {"note": "", "source": "real", "rig": {}, "drive": {}, "provenance": {}, "result": {}}
     store.calibrations.add(**calibration, experiment_ids=[calibrated], trial_ids=[])
-    used = {one.experiment_id: one.used_by for one in store.retention.expired(Policy(completed_days=1))}
+    used = {one.experiment_id: one.used_by for one in store.retention.expired(RetentionSettings(completed_days=1))}
     assert used == {studied: ("study 1 (gear 12)",), calibrated: ("calibration 1",), free: ()}
 
 

@@ -32,7 +32,7 @@ def paper(
     from bench.report import write_html
 
     session = session_of(context)
-    configuration = with_seed(session.configuration(), seed)
+    configuration = seeded(session.configuration(), seed)
 
     def conduct(runner: "Runner") -> None:
         with stopping_on_signals(runner) as received:
@@ -49,17 +49,16 @@ def paper(
         say(f"Report: {report}")
 
 
-def with_seed(configuration: "BenchConfiguration", seed: int | None) -> "BenchConfiguration":
+def seeded(configuration: "BenchConfiguration", seed: int | None) -> "BenchConfiguration":
     """The configuration with another seed of its simulated drive."""
-    from bench.control.drive_factory import seed_of
+    from bench.control.drive_factory import seed_of, with_seed
     from bench.errors import ConfigurationError
 
     if seed is None:
         return configuration
     if seed_of(configuration) is None:
         raise ConfigurationError("--seed is for a simulated drive; the drive of this bench has none")
-    drive = configuration.drive.model_copy(update={"seed": seed})
-    return configuration.model_copy(update={"drive": drive})
+    return with_seed(configuration, seed)
 
 
 def _show(row: "Row") -> None:

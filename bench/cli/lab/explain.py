@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from bench.cli.bench_session import session_of
-from bench.cli.output import FileError, Json, console, percent, print_json, say, table, write_whole
+from bench.cli.output import Json, console, percent, print_json, refuse_taken, say, table, write_whole
 from bench.cli.records.guessed import CountsPerTurn, RateHz, SupplyV, Take, known_of, remark_imported_before, show
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
@@ -53,8 +53,7 @@ def explain(
     recordings, guess = read_unknown(path, chosen_rig, known, None if mapping is None else read_mapping(mapping))
     called = name or recordings.name
     report = html or _free(f"explain-{re.sub(r'[^A-Za-z0-9._-]+', '-', called)}")
-    if report.exists():
-        raise FileError(f"{report}: is there already; name another file with --html, or remove it")
+    refuse_taken(report, "name another file with --html")
     if guess is not None and not as_json:
         show(guess, recordings.notes)
     elif not as_json:

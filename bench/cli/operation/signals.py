@@ -4,7 +4,7 @@ Then the program ends.
 """
 
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import FrameType
@@ -30,16 +30,27 @@ _NAMES = {
 
 
 @contextmanager
+def handled_by(handler: Callable[[int, FrameType | None], object], numbers: Iterable[int]) -> Iterator[None]:
+    """While it lasts these signals are a function's."""
+    before = {number: signal.signal(number, handler) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, earlier in before.items():
+            signal.signal(number, earlier)
+
+
+def _not_ignored() -> list[signal.Signals]:
+    """`nohup` has SIGHUP ignored, and means it."""
+    return [number for number in _CODES if signal.getsignal(number) is not signal.SIG_IGN]
+
+
+@contextmanager
 def until_interrupted() -> Iterator[Callable[[], bool]]:
     """While it lasts a signal ends nothing by itself: whoever asks is told that one has come."""
     came: list[int] = []
-    wanted = [number for number in _CODES if signal.getsignal(number) is not signal.SIG_IGN]
-    before = {number: signal.signal(number, lambda number, _frame: came.append(number)) for number in wanted}
-    try:
+    with handled_by(lambda number, _frame: came.append(number), _not_ignored()):
         yield lambda: bool(came)
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 @contextmanager
@@ -76,11 +87,5 @@ def stopping_on_signals(runner: "BenchControl") -> Iterator[Received]:
             received.exit_code = _CODES[signal.Signals(number)]
         runner.stop(_NAMES[signal.Signals(number)])
 
-    # `nohup` has SIGHUP ignored, and means it
-    wanted = [number for number in _CODES if signal.getsignal(number) is not signal.SIG_IGN]
-    before = {number: signal.signal(number, stop) for number in wanted}
-    try:
+    with handled_by(stop, _not_ignored()):
         yield received
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

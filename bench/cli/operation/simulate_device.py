@@ -3,16 +3,15 @@
 import json as json_text
 import signal
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import fields
 from inspect import Parameter, getdoc, signature
-from types import FrameType
 from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 from typer.core import TyperGroup
 
+from bench.cli.operation.signals import handled_by
 from bench.cli.output import remark, say
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
@@ -92,7 +91,8 @@ def _serve(simulated: "Simulated", json: bool) -> None:
     """Say where the device is, and keep it until Ctrl-C or SIGTERM."""
     device = simulated.device
     drive = simulated.drive | {"side_channel": device.side_channel}
-    with _until_told_to_end() as stop, device:
+    stop = threading.Event()
+    with handled_by(lambda _number, _frame: stop.set(), (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)), device:
         if json:
             typer.echo(json_text.dumps({"port": device.path, "side_channel": device.side_channel, "drive": drive}))
         else:
@@ -103,20 +103,3 @@ def _serve(simulated: "Simulated", json: bool) -> None:
                 say(f"{key} = {json_text.dumps(value)}")  # a TOML value, too, where it is flat
             remark("\nCtrl-C ends it.")
         device.wait(stop)
-
-
-@contextmanager
-def _until_told_to_end() -> Iterator[threading.Event]:
-    """An event that Ctrl-C, SIGTERM and SIGHUP set, while it lasts."""
-    stop = threading.Event()
-
-    def end(_number: int, _frame: FrameType | None) -> None:
-        stop.set()
-
-    wanted = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    before = {number: signal.signal(number, end) for number in wanted}
-    try:
-        yield stop
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -1,7 +1,6 @@
 """`friction-bench token`: who may do what with the service; made and revoked by whoever can write the store."""
 
 from datetime import timedelta
-from enum import StrEnum
 from typing import Annotated
 
 import typer
@@ -9,17 +8,10 @@ import typer
 from bench.cli.audit_note import note
 from bench.cli.bench_session import session_of
 from bench.cli.output import Json, print_json, remark, say, table
+from bench.service.auth.tokens import Role
 
 app = typer.Typer(no_args_is_help=True)
 Name = Annotated[str, typer.Argument(help="Of the person or the program that gets it; never given twice.")]
-
-
-class RoleName(StrEnum):
-    """As `bench.service.auth.tokens.Role`, which is imported when needed."""
-
-    VIEWER = "viewer"
-    OPERATOR = "operator"
-    ADMIN = "admin"
 
 
 @app.callback()
@@ -32,8 +24,8 @@ def new(
     context: typer.Context,
     name: Name,
     role: Annotated[
-        RoleName, typer.Option(help="viewer: reads and stops. operator: runs and changes. admin: may all.")
-    ] = RoleName.OPERATOR,
+        Role, typer.Option(help="viewer: reads and stops. operator: runs and changes. admin: may all.")
+    ] = Role.OPERATOR,
     expires_days: Annotated[
         float | None, typer.Option(min=1e-3, max=36500, help="After so many days it opens nothing; without it, never.")
     ] = None,

@@ -1,24 +1,18 @@
 """Watching a run: a progress bar on a terminal, plain lines elsewhere."""
 
-from typing import TYPE_CHECKING
-
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-
-from bench.cli.output import console, say
-
-if TYPE_CHECKING:
-    from bench.runs.bench_control import RunnerStatus
-    from bench.runs.runner import Runner
 import select
 import sys
 from typing import TYPE_CHECKING
 
 import typer
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from bench.cli.output import console, say
 from bench.errors import PromptError
 
 if TYPE_CHECKING:
     from bench.control.prompt import Prompt
+    from bench.runs.bench_control import RunnerStatus
     from bench.runs.runner import Runner
 
 _POLL_S = 0.1

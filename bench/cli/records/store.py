@@ -131,12 +131,10 @@ def prune(
     as_json: Json = False,
 ) -> None:
     """List the experiments that [store.retention] of bench.toml does not keep any more; with --delete, remove them."""
-    from bench.store.upkeep.retention import Policy
-
     session = session_of(context)
     settings = session.configuration().store.retention
     with session.open_store() as store:
-        found = store.retention.expired(Policy(**settings.model_dump()))
+        found = store.retention.expired(settings)
         chosen = [one.experiment_id for one in found if used_too or not one.used_by]
         audit_entries = 0 if settings.audit_days is None else store.access.audit.count_older(settings.audit_days)
         if delete:

@@ -3,14 +3,12 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from bench.config.configuration import default_configuration
-from bench.evaluation.paper.measurements import Measurement, measure, quietly
+from bench.control.drive_factory import with_seed
+from bench.evaluation.paper.measurements import Measurement, measure, own_store, quietly
 from bench.json_types import Value
-from bench.store import Store
 
 LOAD_KG = 0.1
 STEPS = Measurement("steps", {"repeats": 3, "load_kg": LOAD_KG})
@@ -112,12 +110,10 @@ def metric_names() -> list[str]:
 
 def run_seed(seed: int) -> SeedValues:
     """Run the campaign once on the simulated bench of the paper."""
-    configuration = default_configuration()
-    drive = configuration.drive.model_copy(update={"seed": seed})
-    seeded = configuration.model_copy(update={"drive": drive})
+    seeded = with_seed(default_configuration(), seed)
     values: dict[str, float] = {}
     failures = []
-    with TemporaryDirectory() as folder, Store.open(f"sqlite:///{Path(folder) / 'campaign.sqlite'}") as store:
+    with own_store() as store:
         for measurement in (STEPS, LOADS):
             try:
                 found = measure(seeded, store, measurement, quietly).results

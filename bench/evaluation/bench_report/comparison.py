@@ -22,11 +22,11 @@ from scipy import stats
 
 from bench.errors import BaselineError
 from bench.evaluation.bench_report.campaign import METRICS, Metric, SeedValues
+from compensator.lab.recordings.recording import FloatArray
 
 FAMILY_RATE = 0.01
 LEVEL = 0.95  # of the interval of the difference, which is there to show its size
 ROUNDING = 1e-9  # of the largest value: differences of sums below it are none
-FloatArray = NDArray[np.float64]
 Verdict = Literal["as before", "worse", "better", "changed", "failed"]
 
 

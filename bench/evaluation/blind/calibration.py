@@ -6,9 +6,9 @@ from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
-from scipy.stats import beta
 
 from bench.evaluation.blind.result import Result
+from bench.evaluation.figures.coverage import Share
 
 Value = TypeVar("Value")
 STATED_P = (0.01, 0.05, 0.1, 0.2, 0.5)
@@ -102,14 +102,7 @@ def _by_d_prime(
     return rows
 
 
-def interval(hits: int, count: int) -> tuple[float, float]:
-    """The 95 % interval of a share (Clopper and Pearson 1934)."""
-    low = float(beta.ppf(0.025, hits, count - hits + 1)) if hits else 0.0
-    high = float(beta.ppf(0.975, hits + 1, count - hits)) if hits < count else 1.0
-    return low, high
-
-
 def _stated(what: str, at: float, held: Sequence[bool]) -> Stated:
     if not held:
         return Stated(what, at, 0, float("nan"), float("nan"), float("nan"))
-    return Stated(what, at, len(held), sum(held) / len(held), *interval(sum(held), len(held)))
+    return Stated(what, at, len(held), sum(held) / len(held), *Share(sum(held), len(held)).interval())

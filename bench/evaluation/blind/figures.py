@@ -7,10 +7,10 @@ from math import isnan, nan
 import numpy as np
 from scipy.stats import kstest
 
-from bench.evaluation.blind.calibration import interval
 from bench.evaluation.blind.result import LabAnswer, Result, Standing
 from bench.evaluation.blind.smallest import smallest_found
 from bench.evaluation.challenge.names import ACCEPTED
+from bench.evaluation.figures.coverage import Share
 
 MUST_NAME, MUST_NOT_NAME = 6.0, 3.0  # d' from which a name is due, and below which a single one is too much
 STATED, OFF = 0.9, 0.04  # confidence of intervals, and by how much it may be wrong
@@ -130,7 +130,7 @@ def _intervals(answered: Sequence[Result]) -> Figure:
     """Intervals of the parameters of complete models hold the truth as often as they say."""
     held = [one <= STATED for result in answered for one in result.confidences]
     count, share = len(held), float(np.mean(held)) if held else nan
-    low, high = interval(sum(held), count) if held else (nan, nan)
+    low, high = Share(sum(held), count).interval()
     asked = f"{STATED - OFF:.0%} .. {STATED + OFF:.0%}"
     what = f"{STATED:.0%} intervals of the parameters of complete models that hold the truth"
     return Figure(what, asked, share, low, high, count, abs(share - STATED) <= OFF)
@@ -227,7 +227,7 @@ def _share(
     count, hits = len(among), sum(holds(one) for one in among)
     if not count:
         return Figure(what, asked, nan, nan, nan, 0, False)
-    low, high = interval(hits, count)
+    low, high = Share(hits, count).interval()
     measured = hits / count
     return Figure(what, asked, measured, low, high, count, measured <= limit if at_most else measured >= limit)
 

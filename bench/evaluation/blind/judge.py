@@ -1,6 +1,7 @@
 """One item from draw to result: record, ask the lab, ask the rivals, ask the oracle."""
 
 import time
+from collections.abc import Sequence
 
 from bench.evaluation.blind.baseline_methods import RIVALS
 from bench.evaluation.blind.items import FAMILIES, Item
@@ -79,7 +80,8 @@ def judge(item: Item) -> Result:
         standings, error = _oracle(fit, gathered, names)
         rivals = {name: rival(gathered) for name, rival in RIVALS.items()}
         more_left = unexplained(item, found) if names == ("",) else None
-        unlisted = _unlisted(fit, truths) if FAMILIES[item.family].withheld else None
+        catalogued = [name for truth in truths for name in accepted(truth)] if FAMILIES[item.family].withheld else []
+        unlisted = ask_without(fit, catalogued) if catalogued else None
         left = None if unlisted is None else left_beside(fit, gathered, names[0], unlisted.first[:1])
         settled = settle(bench_for(item, drawn), recordings, fit, names[0]) if FAMILIES[item.family].settled else None
     except LabError as refusal:
@@ -93,11 +95,8 @@ def judge(item: Item) -> Result:
     )  # fmt: skip
 
 
-def _unlisted(fit: Fit, truths: tuple[str, ...]) -> LabAnswer | None:
-    """What the lab says of a mechanism that it knows, as if nobody had written it yet."""
-    names = [name for truth in truths for name in accepted(truth)]
-    if not names:
-        return None
+def ask_without(fit: Fit, names: Sequence[str]) -> LabAnswer:
+    """What the lab says as if nobody had written these effects yet."""
     with withheld(names):
         return ask_lab(fit, several=False)
 
@@ -111,13 +110,18 @@ def left_beside(fit: Fit, base: Candidates, name: str, named: tuple[str, ...]) -
 
 def _oracle(fit: Fit, base: Candidates, names: tuple[str, ...]) -> tuple[tuple[Standing | None, ...], float]:
     """How far each truth stands out of the model with all the others, and the error of the model with all of them."""
-    known = [name for name in names if name and can_be_seen(fit, name)]
-    whole = fit_effects(fit, [*fit.names, *known]) if known else fit
+    whole, known = with_known(fit, names)
     standings = []
     for name in names:
         others = [other for other in known if other != name]
         standings.append(_best_standing(fit, base, others, name) if name in known else None)
     return tuple(standings), held_out(whole).relative
+
+
+def with_known(fit: Fit, names: Sequence[str]) -> tuple[Fit, list[str]]:
+    """The model with all that is hidden, as far as the catalogue and these trials have it, and what that is."""
+    known = [name for name in names if name and can_be_seen(fit, name)]
+    return fit_effects(fit, [*fit.names, *known]) if known else fit, known
 
 
 def _best_standing(fit: Fit, base: Candidates, others: list[str], name: str) -> Standing | None:

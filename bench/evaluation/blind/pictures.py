@@ -1,7 +1,6 @@
 """A run of the blind benchmark as a page: asked and measured, the rivals, and stated against observed."""
 
 from collections.abc import Sequence
-from math import isnan
 from pathlib import Path
 
 from bench.evaluation.blind.calibration import (
@@ -15,6 +14,7 @@ from bench.evaluation.blind.calibration import (
 from bench.evaluation.blind.confusion import rival_figures
 from bench.evaluation.blind.figures import figures
 from bench.evaluation.blind.result import Result
+from bench.json_types import known
 from bench.report.html import write_html
 from bench.report.section import Figure, Line, Points, Section, Table
 
@@ -32,12 +32,12 @@ def sections_of(results: Sequence[Result], command: str) -> list[Section]:
     settled, came = named_by_prediction(results), came_of_prediction(results)
     measured = [
         (
-            one.what, one.asked, _number(one.measured), _number(one.low), _number(one.high), one.items,
+            one.what, one.asked, known(one.measured), known(one.low), known(one.high), one.items,
             one.reached if one.is_told else None,
         )
         for one in figures(results)
     ]  # fmt: skip
-    methods = [(one.name, _number(one.false_alarm), _number(one.named_first)) for one in rival_figures(results)]
+    methods = [(one.name, known(one.false_alarm), known(one.named_first)) for one in rival_figures(results)]
     columns = ("what", "asked", "measured#", "from#", "to#", "items#", "reached")
     return [
         Section("Asked and measured", (command,), (Table("95 % intervals", columns, measured),)),
@@ -73,7 +73,7 @@ def _came_table(rows: Sequence[Came]) -> Table:
     return Table(
         "d' of each round",
         ("predicted", "rounds#", "median#", "quartile#", "quartile#"),
-        [(one.what, one.rounds, _number(one.median), _number(one.low), _number(one.high)) for one in rows],
+        [(one.what, one.rounds, known(one.median), known(one.low), known(one.high)) for one in rows],
     )
 
 
@@ -92,10 +92,5 @@ def _table(rows: Sequence[Stated]) -> Table:
     return Table(
         "As numbers",
         ("stated", "items#", "observed#", "from#", "to#"),
-        [(one.what, one.items, _number(one.observed), _number(one.low), _number(one.high)) for one in rows],
+        [(one.what, one.items, known(one.observed), known(one.low), known(one.high)) for one in rows],
     )
-
-
-def _number(value: float) -> float | None:
-    """A number, or nothing where it was not measured."""
-    return None if isnan(value) else value

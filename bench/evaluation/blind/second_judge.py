@@ -8,10 +8,10 @@ import numpy as np
 
 from bench.evaluation.blind.baseline_methods import RIVALS
 from bench.evaluation.blind.items import Item, listed
-from bench.evaluation.blind.judge import ask_lab, can_be_seen, left_beside
+from bench.evaluation.blind.judge import ask_lab, ask_without, left_beside, with_known
 from bench.evaluation.blind.oracle import NEEDED
 from bench.evaluation.blind.recorded import base_fit
-from bench.evaluation.blind.result import LabAnswer, Result, Standing
+from bench.evaluation.blind.result import Result, Standing
 from bench.evaluation.blind.second_plant import (
     KNOWN,
     NAMES,
@@ -23,10 +23,7 @@ from bench.evaluation.blind.second_plant import (
     true_parameters,
 )
 from bench.evaluation.blind.stated import confidences
-from compensator.lab.effects.catalogue import withheld
 from compensator.lab.errors import LabError
-from compensator.lab.model.fit import fit_effects
-from compensator.lab.model.fitted import Fit
 from compensator.lab.model.validation import held_out
 from compensator.lab.screening.gathering import gather
 
@@ -102,10 +99,10 @@ def judge_second(item: Item) -> Result:
         answer = ask_lab(fit, several=len(names) > 1 or bool(joint.own))
         seconds = time.process_time() - began
         gathered = gather(fit)
-        error = held_out(_whole(fit, names)).relative
+        error = held_out(with_known(fit, names)[0]).relative
         rivals = {name: rival(gathered) for name, rival in RIVALS.items()}
         stated = confidences(fit, true_parameters(joint)) if item.family == "complete" else ()
-        unlisted = _without_name(fit, names[0]) if item.family == "single" else None
+        unlisted = ask_without(fit, names[:1]) if item.family == "single" else None
         left = None if unlisted is None else left_beside(fit, gathered, names[0], unlisted.first[:1])
     except LabError as refusal:
         return Result(
@@ -116,15 +113,3 @@ def judge_second(item: Item) -> Result:
         item.key, item.family, joint.truths, names, joint.sizes, answer, standings, outside, error, rivals, seconds,
         withheld=unlisted, withheld_left=left, laws=joint.laws, own=joint.own, confidences=stated,
     )  # fmt: skip
-
-
-def _whole(fit: Fit, names: tuple[str, ...]) -> Fit:
-    """The model with all that is hidden, as far as the catalogue and these trials have it."""
-    known = [name for name in names if name and can_be_seen(fit, name)]
-    return fit_effects(fit, [*fit.names, *known]) if known else fit
-
-
-def _without_name(fit: Fit, name: str) -> LabAnswer:
-    """What the lab says as if nobody had written the effect yet."""
-    with withheld([name]):
-        return ask_lab(fit, several=False)

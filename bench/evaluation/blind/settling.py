@@ -3,7 +3,7 @@
 from collections.abc import Collection, Sequence
 
 from bench.config.configuration import BenchConfiguration
-from bench.drives.sim.settings import SimulatedDriveSettings
+from bench.control.drive_factory import seed_of, with_seed
 from bench.errors import ExperimentError, LimitError
 from bench.evaluation.blind.recorded import refitted
 from bench.evaluation.blind.result import Settled
@@ -118,6 +118,4 @@ class _Rounds:
 
 def _again(configuration: BenchConfiguration, times: int) -> BenchConfiguration:
     """The same joint, with other noise."""
-    drive = configuration.drive
-    assert isinstance(drive, SimulatedDriveSettings)
-    return configuration.model_copy(update={"drive": drive.model_copy(update={"seed": (drive.seed + times) % 2**31})})
+    return with_seed(configuration, ((seed_of(configuration) or 0) + times) % 2**31)

@@ -46,11 +46,12 @@ def record(configuration: BenchConfiguration, protocol: Protocol) -> list[Record
         return [
             bench.record(plan, kind)
             for kind, parameters in protocol
-            for plan in _plans(kind, parameters, configuration)
+            for plan in plans_of(kind, parameters, configuration)
         ]
 
 
-def _plans(name: str, values: Values, configuration: BenchConfiguration) -> Iterator[TrialPlan]:
+def plans_of(name: str, values: Values, configuration: BenchConfiguration) -> Iterator[TrialPlan]:
+    """The trials of an experiment, which the bench does not refuse. Errors as `ExperimentKind.refuse`."""
     kind = find_kind(name)
     parameters = parse_parameters(kind, values)
     kind.refuse(parameters, configuration)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
-from bench.config.reflected_load import load_current_a, torque_n_m_a
+from bench.config.reflected_load import per_kg_a, torque_n_m_a
 from bench.config.rig import resolution_rad
 from bench.experiments.kinds.steady_speeds import STEADY_SHARE, SteadySpeedsParameters
 from bench.experiments.parts.load_follower import WINDOW_S
@@ -64,5 +64,4 @@ def stroke_bound_g(configuration: BenchConfiguration) -> float | None:
 
 def _per_g_a(configuration: BenchConfiguration) -> float:
     """Current of a gram more at 90 degrees [A]."""
-    rig = configuration.rig
-    return 1e-3 * (load_current_a(1.0, pi / 2, rig) - load_current_a(0.0, pi / 2, rig))
+    return 1e-3 * per_kg_a(configuration.rig)

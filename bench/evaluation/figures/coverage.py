@@ -10,7 +10,7 @@ from scipy.stats import beta, binom
 from bench.config.reflected_load import arm_angle_rad, load_current_a
 from bench.config.rig import Rig
 
-CONFIDENCE = 0.95
+TAIL = 0.025  # either side of 95 %
 MOST = 0.9
 
 
@@ -24,9 +24,9 @@ class Share(NamedTuple):
         """What share may be behind it, 95 % (Clopper and Pearson); NaN without trials."""
         if self.trials == 0:
             return nan, nan
-        held, missed, tail = self.held, self.trials - self.held, (1.0 - CONFIDENCE) / 2.0
-        low = float(beta.ppf(tail, held, missed + 1)) if held else 0.0
-        high = float(beta.ppf(1.0 - tail, held + 1, missed)) if missed else 1.0
+        held, missed = self.held, self.trials - self.held
+        low = float(beta.ppf(TAIL, held, missed + 1)) if held else 0.0
+        high = float(beta.ppf(1.0 - TAIL, held + 1, missed)) if missed else 1.0
         return low, high
 
 
@@ -35,7 +35,7 @@ def median_interval(numbers: Sequence[float]) -> tuple[float, float]:
 
     By order statistics (David and Nagaraja, "Order Statistics", 2003, section 7.1), whatever they are drawn from.
     """
-    rank = int(binom.ppf((1.0 - CONFIDENCE) / 2.0, len(numbers), 0.5)) if len(numbers) else 0
+    rank = int(binom.ppf(TAIL, len(numbers), 0.5)) if len(numbers) else 0
     if rank == 0:
         return nan, nan
     ordered = sorted(numbers)

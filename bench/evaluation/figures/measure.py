@@ -5,7 +5,8 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
 from bench.config.configuration import BenchConfiguration
-from bench.evaluation.figures.rigs import drawn_rig, with_seed
+from bench.control.drive_factory import with_seed
+from bench.evaluation.figures.rigs import drawn_rig
 from bench.evaluation.figures.table import FigureRow, figures_table
 from bench.evaluation.figures.trials import SeedResults, calibrated, run_rig, run_seed
 

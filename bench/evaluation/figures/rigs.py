@@ -40,15 +40,3 @@ def drawn_rig(configuration: BenchConfiguration, seed: int) -> BenchConfiguratio
     )
     drive = SimulatedDriveSettings(plant=plant, seed=seed)
     return configuration.model_copy(update={"rig": rig, "drive": drive})
-
-
-def with_seed(configuration: BenchConfiguration, seed: int) -> BenchConfiguration:
-    """The same rig, with another seed of its scatter."""
-    drive = configuration.drive.model_copy(update={"seed": seed})
-    return configuration.model_copy(update={"drive": drive})
-
-
-def seed_of(configuration: BenchConfiguration) -> int:
-    """Of the scatter of a simulated rig."""
-    assert isinstance(configuration.drive, SimulatedDriveSettings)
-    return configuration.drive.seed

@@ -15,6 +15,7 @@ from bench.evaluation.figures.trials import SeedResults
 
 STRAIGHT_DOWN_RAD = 0.1
 Numbers = list[float]
+Measure = Callable[[SeedResults, BenchConfiguration], Numbers]
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Asked:
     low: float
     high: float
     paper: str
-    numbers: Callable[[SeedResults, BenchConfiguration], Numbers]
+    numbers: Measure
     whole: Callable[[Sequence[float]], float]
     note: str = ""
     drawn_high: float | None = None
@@ -48,10 +49,14 @@ def _rows(seed: SeedResults, name: str) -> list[dict[str, Any]]:
     return list(seed.results.get(name, {}).get("rows", []))
 
 
-def summary(seed: SeedResults, name: str, key: str, scale: float = 1.0) -> Numbers:
+def summary(name: str, key: str, scale: float = 1.0) -> Measure:
     """One number of the summary of an experiment; none where it is not there."""
-    value = seed.results.get(name, {}).get(key)
-    return [] if value is None else [scale * value]
+
+    def numbers(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
+        value = seed.results.get(name, {}).get(key)
+        return [] if value is None else [scale * value]
+
+    return numbers
 
 
 def _errors_g(seed: SeedResults, name: str) -> Numbers:
@@ -59,7 +64,7 @@ def _errors_g(seed: SeedResults, name: str) -> Numbers:
     return [1e3 * (row["reflected_load_kg"] - row["load_kg"]) for row in rows]
 
 
-def _whole(errors_g: Callable[[SeedResults], Numbers], of: Callable[[Numbers], Any]) -> Callable[..., Numbers]:
+def _whole(errors_g: Callable[[SeedResults], Numbers], of: Callable[[Numbers], Any]) -> Measure:
     """One number of the errors of a seed; none where it has none."""
 
     def numbers(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
@@ -114,10 +119,6 @@ def _stroke_bound(seed: SeedResults, configuration: BenchConfiguration) -> Numbe
     return [] if bound_g is None else [bound_g]
 
 
-def _sinusoid(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
-    return summary(seed, "sinusoid", "rms_ratio")
-
-
 def _drawn(seed: SeedResults, configuration: BenchConfiguration) -> Share:
     return held(_rows(seed, "drawn"), configuration.rig)
 
@@ -128,7 +129,7 @@ def _swept(seed: SeedResults, configuration: BenchConfiguration) -> Share:
     return held(raised, configuration.rig)
 
 
-def _per_cent(share: Callable[[SeedResults, BenchConfiguration], Share]) -> Callable[..., Numbers]:
+def _per_cent(share: Callable[[SeedResults, BenchConfiguration], Share]) -> Measure:
     def numbers(seed: SeedResults, configuration: BenchConfiguration) -> Numbers:
         found = share(seed, configuration)
         return [100.0 * found.held / found.trials] if found.trials else []
@@ -193,7 +194,10 @@ ASKED = (
         "steady speeds, every control cycle by itself: mean absolute error", "g", 0.0, 1.5, "-", _cycles_g, mean,
         "what a master arm is given at any moment; it lags by half a window",
     ),
-    Asked("sinusoid, 50 g: error rms compensated / not", "", 0.0, 1.0 / 8.0, "future work", _sinusoid, mean),
+    Asked(
+        "sinusoid, 50 g: error rms compensated / not", "", 0.0, 1.0 / 8.0, "future work",
+        summary("sinusoid", "rms_ratio"), mean,
+    ),
     Asked(
         "95 % interval of I_load holds the truth", "%", 92.0, 98.0, "-", _per_cent(_drawn), mean,
         "of trials under loads and at angles drawn at random, each rig calibrated several times; hanging straight down "

@@ -1,11 +1,8 @@
 """What is run for the figures, through the ordinary loop: a calibration of the rig, then trials with other seeds."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -14,9 +11,8 @@ from bench.calibration import calibrate, friction_of
 from bench.calibration.rest import rest_of
 from bench.calibration.selection import rest_settings_of
 from bench.config.configuration import BenchConfiguration
-from bench.evaluation.figures.rigs import seed_of, with_seed
-from bench.evaluation.paper.measurements import Measurement, Plan, measure, quietly
-from bench.store import Store
+from bench.control.drive_factory import seed_of, with_seed
+from bench.evaluation.paper.measurements import Measurement, Plan, measure, own_store, quietly
 from compensator.errors import CalibrationError
 
 RIGHT_ANGLE_RAD = pi / 2
@@ -66,7 +62,7 @@ class SeedResults:
 
 def calibrated(configuration: BenchConfiguration) -> BenchConfiguration:
     """The rig's configuration with what its calibration told."""
-    with _own_store() as store:
+    with own_store() as store:
         ids = [measure(configuration, store, one, quietly).id for one in (CURVES, AT_REST)]
         row = store.calibrations.get(calibrate(store, ids))
     return configuration.model_copy(update={"friction": friction_of(row), "rest": rest_settings_of(row)})
@@ -78,27 +74,22 @@ def calibrated_at_rest(configuration: BenchConfiguration, at_rest: Measurement =
     Raises:
         CalibrationError: its searches do not tell.
     """
-    with _own_store() as store:
+    with own_store() as store:
         told = rest_of(store.trials(measure(configuration, store, at_rest, quietly).id), configuration.rig)
     if told.settings is None:
         raise CalibrationError(told.why_not)
     return configuration.model_copy(update={"rest": told.settings})
 
 
-@contextmanager
-def _own_store() -> Iterator[Store]:
-    """A store that is gone afterwards."""
-    with TemporaryDirectory() as folder, Store.open(f"sqlite:///{Path(folder) / 'trials.sqlite'}") as store:
-        yield store
-
-
 def run_seed(configuration: BenchConfiguration) -> SeedResults:
     """Every experiment behind the figures, once, on a calibrated rig."""
+    seed = seed_of(configuration)
+    assert seed is not None  # figures are of simulated joints
     flow_chart = configuration.search.model_copy(update={"method": "paper"})
     quick = configuration.search.model_copy(update={"pairs": 2})
     wanted = [(name, configuration, one) for name, one in TRIALS.items()]
     wanted += [
-        ("drawn", configuration, drawn_loads(seed_of(configuration))),
+        ("drawn", configuration, drawn_loads(seed)),
         ("paper", configuration.model_copy(update={"search": flow_chart, "rest": None}), SHORT),
         ("quick", configuration.model_copy(update={"search": quick}), SHORT),
         ("margin", unhindered(configuration), MARGIN),
@@ -130,7 +121,7 @@ def _run(wanted: Sequence[tuple[str, BenchConfiguration, Measurement]]) -> SeedR
     """Each experiment, with why one is missing."""
     results: dict[str, dict[str, Any]] = {}
     failures: dict[str, str] = {}
-    with _own_store() as store:
+    with own_store() as store:
         for name, bench, one in wanted:
             try:
                 results[name] = measure(bench, store, one, quietly).results

@@ -1,6 +1,6 @@
 """What a master is given while its slave hits a wall and lets go of it; up to which force scale the pair is calm."""
 
-from collections.abc import Callable
+from functools import partial
 from math import inf, nan
 
 from bench.config.configuration import BenchConfiguration
@@ -11,22 +11,12 @@ MS = 1e3
 TRIED = 0.01  # least force scale that a ratio is taken to
 
 
-def _of(key: str, scale: float = 1.0) -> Callable[[SeedResults, BenchConfiguration], Numbers]:
-    def numbers(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
-        return summary(seed, "wall", key, scale)
-
-    return numbers
-
-
-def _margin(way: str) -> Callable[[SeedResults, BenchConfiguration], Numbers]:
-    def numbers(seed: SeedResults, _configuration: BenchConfiguration) -> Numbers:
-        return summary(seed, "margin", f"{way}_stability_margin")
-
-    return numbers
+_of = partial(summary, "wall")
+_compensated, _raw = (summary("margin", f"{way}_stability_margin") for way in ("compensated", "raw"))
 
 
 def _margins(seed: SeedResults, configuration: BenchConfiguration) -> Numbers:
-    ours, raw = _margin("compensated")(seed, configuration), _margin("raw")(seed, configuration)
+    ours, raw = _compensated(seed, configuration), _raw(seed, configuration)
     return [one / max(other, TRIED) for one, other in zip(ours, raw, strict=False)]
 
 
@@ -63,8 +53,8 @@ BESIDE_A_WALL = (
         _of("raw_late_error_max_g"), mean,
     ),
     Asked("wall, reflected: time to half of a hit", "ms", 0.0, nan, "-", _of("compensated_rise_s", MS), mean),
-    Asked("the force scale itself, compensated", "", TRIED, nan, "-", _margin("compensated"), median),
-    Asked("the force scale itself, raw current", "", TRIED, nan, "-", _margin("raw"), median),
+    Asked("the force scale itself, compensated", "", TRIED, nan, "-", _compensated, median),
+    Asked("the force scale itself, raw current", "", TRIED, nan, "-", _raw, median),
     Asked(
         "the largest error of the raw current at a wall", "g", 0.0, nan, "-", _of("raw_reflected_error_max_g"), most,
         "in a trial of its own: what drags slows the hand, and the hit is softer",

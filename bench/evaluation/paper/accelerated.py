@@ -6,7 +6,7 @@ import numpy as np
 
 from bench.config.reflected_load import load_current_a
 from bench.config.rig import Rig
-from bench.evaluation.paper.row import Row
+from bench.evaluation.paper.row import Row, ids_of
 from bench.report import Figure, Line, Section
 from bench.store import Experiment, Store
 
@@ -35,7 +35,7 @@ def accelerated(store: Store, experiment: Experiment) -> Row:
         ],
         figures=[_figure(store, trials[0].id, experiment)],
     )
-    return Row("accelerated", section, dict(ours), {}, (experiment.id,), tuple(trial.id for trial in trials))
+    return Row("accelerated", section, dict(ours), {}, (experiment.id,), ids_of(trials))
 
 
 def _figure(store: Store, trial_id: int, experiment: Experiment) -> Figure:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from math import isclose, pi, sqrt
 
-from bench.evaluation.paper.row import FIG_7, FIG_9, TABLE_1_G, Row
+from bench.evaluation.paper.row import FIG_7, FIG_9, TABLE_1_G, Row, ids_of
 from bench.report import Figure, Line, Points, Section, Table
 from bench.store import Experiment, Trial
 
@@ -28,7 +28,7 @@ def fig_7(experiment: Experiment, trials: Sequence[Trial], grams_per_ma: float) 
         ],
         figures=[_envelope(found, "Current at angle 0")],
     )
-    return Row("fig-7", section, ours, dict(FIG_7), (experiment.id,), _ids(found))
+    return Row("fig-7", section, ours, dict(FIG_7), (experiment.id,), ids_of(found))
 
 
 def fig_9(experiment: Experiment, trials: Sequence[Trial]) -> Row:
@@ -47,7 +47,7 @@ def fig_9(experiment: Experiment, trials: Sequence[Trial]) -> Row:
         ],
         figures=[_envelope(found, "Current at 90 degrees")],
     )
-    return Row("fig-9", section, ours, dict(FIG_9), (experiment.id,), _ids(found))
+    return Row("fig-9", section, ours, dict(FIG_9), (experiment.id,), ids_of(found))
 
 
 def table_1(experiment: Experiment, trials: Sequence[Trial]) -> Row:
@@ -102,7 +102,7 @@ def table_1(experiment: Experiment, trials: Sequence[Trial]) -> Row:
             ),
         ],
     )
-    return Row("table-1", section, dict(ours), dict(paper), (experiment.id,), _ids(found))
+    return Row("table-1", section, dict(ours), dict(paper), (experiment.id,), ids_of(found))
 
 
 def _rounded(value_g: float) -> float:
@@ -145,7 +145,3 @@ def _errors(errors_g: Sequence[float]) -> dict[str, float]:
         "rms_error_g": sqrt(sum(error**2 for error in errors_g) / len(errors_g)),
         "max_error_g": max(map(abs, errors_g)),
     }
-
-
-def _ids(trials: Sequence[Trial]) -> tuple[int, ...]:
-    return tuple(trial.id for trial in trials)

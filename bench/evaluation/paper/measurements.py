@@ -1,8 +1,11 @@
 """The experiments behind the page: run, or found again in the store."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import pi
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from bench.calibration import calibrate
@@ -134,6 +137,16 @@ def measure(
     if found.outcome != "completed":
         raise ExperimentError(f"experiment {started} ({wanted.kind}): {found.outcome}: {found.reason}")
     return found
+
+
+@contextmanager
+def own_store() -> Iterator[Store]:
+    """A store that is gone afterwards."""
+    with (
+        TemporaryDirectory(prefix="friction-bench-") as folder,
+        Store.open(f"sqlite:///{Path(folder) / 'own.sqlite'}") as store,
+    ):
+        yield store
 
 
 def recorded(store: Store, wanted: Measurement) -> Experiment:

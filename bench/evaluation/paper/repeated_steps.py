@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from bench.evaluation.paper.row import FIG_4, Row
+from bench.evaluation.paper.row import FIG_4, Row, ids_of
 from bench.report import Figure, Line, Points, Section, Table
 from bench.store import Experiment, Trial
 
@@ -54,7 +54,7 @@ def fig_4(experiment: Experiment, trials: Sequence[Trial]) -> Row:
             )
         ],
     )
-    return Row("fig-4", section, ours, dict(FIG_4), (experiment.id,), _ids(trials))
+    return Row("fig-4", section, ours, dict(FIG_4), (experiment.id,), ids_of(trials))
 
 
 def fig_10(experiment: Experiment, trials: Sequence[Trial], grams_per_ma: float) -> Row:
@@ -90,8 +90,4 @@ def fig_10(experiment: Experiment, trials: Sequence[Trial], grams_per_ma: float)
             )
         ],
     )
-    return Row("fig-10", section, ours, {}, (experiment.id,), _ids(trials))
-
-
-def _ids(trials: Sequence[Trial]) -> tuple[int, ...]:
-    return tuple(trial.id for trial in trials)
+    return Row("fig-10", section, ours, {}, (experiment.id,), ids_of(trials))

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from itertools import groupby
 
 from bench.report import Section
+from bench.store import Trial
 
 # what the paper shows, as numbers; read off its figures where it gives no table
 TABLE_1_G = {
@@ -69,6 +70,11 @@ class Row:
         """The section, and a sentence that names its trials."""
         where = f"Drawn from {_named('trial', self.trial_ids)} of {_named('experiment', self.experiment_ids)}."
         return replace(self.section, sentences=[*self.section.sentences, where])
+
+
+def ids_of(trials: Sequence[Trial]) -> tuple[int, ...]:
+    """What a row names of trials."""
+    return tuple(trial.id for trial in trials)
 
 
 def in_words(name: str) -> str:

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench.config.reflected_load import load_current_a
+from bench.config.reflected_load import load_current_a, per_kg_a
 from bench.config.rig import Rig
-from bench.evaluation.paper.row import Row
+from bench.evaluation.paper.row import Row, ids_of
 from bench.report import Figure, Line, Points, Section, Table
 from bench.store import Experiment, Store, Trial
 from compensator.motion.kinetic_friction import FloatArray
@@ -55,7 +55,7 @@ def fig_11(store: Store, experiment: Experiment) -> Row:
         tables=[_table(strokes)],
         figures=[_figure(strokes, actual_g)],
     )
-    return Row("fig-11", section, dict(ours), {}, (experiment.id,), tuple(trial.id for trial in trials))
+    return Row("fig-11", section, dict(ours), {}, (experiment.id,), ids_of(trials))
 
 
 def _strokes(store: Store, trial: Trial, rig: Rig) -> list[Stroke]:
@@ -63,16 +63,14 @@ def _strokes(store: Store, trial: Trial, rig: Rig) -> list[Stroke]:
     truth_a = np.array([load_current_a(float(trial.conditions["load_kg"]), q, rig) for q in samples["position_rad"]])
     measured = samples["current_a"]
     plain_a = np.where(np.isfinite(measured), measured, samples["current_estimate_a"])
-    per_kg_a = load_current_a(1.0, pi / 2, rig) - load_current_a(0.0, pi / 2, rig)
     actual_g = 1e3 * float(trial.conditions["load_kg"])
     speed_rpm = float(trial.conditions["held_speed_rad_s"]) * (rig.gear.ratio or 1.0) * RPM
     strokes = []
     for way in (1.0, -1.0):
         rows = _steady(samples["target_rad"], way) & np.isfinite(samples["current_load_a"])
         if np.any(rows):
-            errors_g, plain_g = (
-                1e3 * (given_a[rows] - truth_a[rows]) / per_kg_a for given_a in (samples["current_load_a"], plain_a)
-            )
+            both_a = samples["current_load_a"], plain_a
+            errors_g, plain_g = (1e3 * (given_a[rows] - truth_a[rows]) / per_kg_a(rig) for given_a in both_a)
             means = actual_g + float(np.mean(errors_g)), actual_g + float(np.mean(plain_g))
             strokes.append(Stroke(way * speed_rpm, *means, errors_g))
     return strokes

@@ -3,11 +3,9 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from bench.config.configuration import BenchConfiguration
-from bench.config.reflected_load import load_current_a
-from bench.control.drive_factory import seed_of
+from bench.config.reflected_load import per_kg_a
+from bench.control.drive_factory import seed_of, with_seed
 from bench.drives.sim.settings import SimulatedDriveSettings
 from bench.errors import ConfigurationError
 from bench.evaluation.rivals import scoring
@@ -67,15 +65,15 @@ def compare(
         knowledge, scores = knowledge_of(joint), {rival.name: Score() for rival in RIVALS}
         for seed in seeds:
             say(f"{rig}: seed {seed}")
-            _score_seed(_with_seed(joint, seed), knowledge, scores)
+            _score_seed(with_seed(joint, seed), knowledge, scores)
         found.append(Comparison(rig, scores))
     return found
 
 
 def _score_seed(configuration: BenchConfiguration, knowledge: Knowledge, scores: dict[str, Score]) -> None:
     """All trials of one seed, each replayed to every rival."""
+    per_kg = per_kg_a(configuration.rig)
     plain = _with_method(configuration, "paper").model_copy(update={"rest": None})
-    per_kg_a = load_current_a(1.0, np.pi / 2, configuration.rig) - load_current_a(0.0, np.pi / 2, configuration.rig)
     at_rest = {"online": record(configuration, "steps", **STEPS), "paper": record(plain, "steps", **STEPS)}
     hanging = {
         "online": scoring.result_of(record(configuration, "load-sweep", **HANGING)[0]),
@@ -85,10 +83,10 @@ def _score_seed(configuration: BenchConfiguration, knowledge: Knowledge, scores:
     for rival in RIVALS:
         score = scores[rival.name]
         for trial in at_rest.get(rival.name, at_rest["online"]):
-            scoring.score_rest(score, rival, knowledge, trial, configuration.rig, per_kg_a)
+            scoring.score_rest(score, rival, knowledge, trial, configuration.rig, per_kg)
         rest: RestResult | None = hanging.get(rival.name)
         for trial, masks in motions:
-            scoring.score_motion(score, rival, knowledge, trial, configuration.rig, rest, masks, per_kg_a)
+            scoring.score_motion(score, rival, knowledge, trial, configuration.rig, rest, masks, per_kg)
 
 
 def _motions(configuration: BenchConfiguration) -> list[tuple[Recorded, dict[str, scoring.Mask]]]:
@@ -104,10 +102,6 @@ def _motions(configuration: BenchConfiguration) -> list[tuple[Recorded, dict[str
         ),
         *((trial, {"wall": scoring.wall_rows(trial)}) for trial in wall),
     ]
-
-
-def _with_seed(configuration: BenchConfiguration, seed: int) -> BenchConfiguration:
-    return configuration.model_copy(update={"drive": configuration.drive.model_copy(update={"seed": seed})})
 
 
 def _with_method(configuration: BenchConfiguration, method: str) -> BenchConfiguration:

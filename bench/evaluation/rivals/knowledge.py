@@ -1,15 +1,12 @@
 """What all rivals know: one calibration of the joint that they are compared on."""
 
-import tempfile
 from math import pi
-from pathlib import Path
 
 from bench.calibration import calibrate, with_friction
 from bench.config.configuration import BenchConfiguration
 from bench.errors import ConfigurationError
-from bench.evaluation.paper.measurements import Measurement, measure, quietly
+from bench.evaluation.paper.measurements import Measurement, measure, own_store, quietly
 from bench.experiments.parts.load_follower import estimator_settings, joint_model
-from bench.store import Store
 from compensator.rivals import Knowledge
 
 LOADS_KG = (0.0, 0.05, 0.1)
@@ -27,10 +24,7 @@ def calibrated(configuration: BenchConfiguration) -> BenchConfiguration:
     """
     if configuration.friction is not None:
         return configuration
-    with (
-        tempfile.TemporaryDirectory(prefix="friction-bench-") as folder,
-        Store.open(f"sqlite:///{Path(folder) / 'rivals.sqlite'}") as store,
-    ):
+    with own_store() as store:
         calibrate(store, [measure(configuration, store, sweep, quietly).id for sweep in SWEEPS])
         return with_friction(store, configuration)
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from math import nan
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from compensator.lab.recordings.recording import FloatArray
+
 LEAST_READINGS = 8
 LEAST_SPEED_SHARE = 0.2  # of the first speed: below, friction rises again (Stribeck), and the teeth may part
 

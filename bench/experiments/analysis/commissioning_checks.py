@@ -4,12 +4,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.config.rig import Rig
 from bench.control.cycle import Reading
+from compensator.lab.recordings.recording import FloatArray
 
-FloatArray = NDArray[np.float64]
 VELOCITY_BAND = (0.8, 1.25)  # filters and quantisation, but no wrong unit
 CONSTANT_BAND = (0.5, 2.0)  # data sheets and warm windings, but no factor of four from counting lines for counts
 MOVING_SHARE = 0.25  # of the highest speed

@@ -6,16 +6,15 @@ from math import isnan, nan
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.control.cycle import Reading
 from bench.errors import ExperimentError
 from bench.experiments.analysis.commissioning_checks import Push, column
 from compensator.errors import CalibrationError
+from compensator.lab.recordings.recording import FloatArray
 from compensator.line_fit import Interval, fit_line
 from compensator.motion.push_identification import JointModel, Motion, identify
 
-FloatArray = NDArray[np.float64]
 LEAST_SHARE = 0.1  # of the voltage that the back-EMF must make up to be told from the resistance's
 LEAST_SAG_STEPS = 2.0  # of what the supply scatters at rest, that it must fall by to be seen
 FLOWS_SHARE = 0.5  # of the current by eq. (3), that the sensor has to show

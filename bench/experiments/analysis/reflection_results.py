@@ -1,12 +1,11 @@
 """What a teleoperation told: how far the reflected load is from the true one, how late, and whether the pair swings."""
 
 from collections.abc import Sequence
-from math import pi
 
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
-from bench.config.reflected_load import load_current_a, torque_n_m_a
+from bench.config.reflected_load import load_current_a, per_kg_a, torque_n_m_a
 from bench.config.rig import resolution_rad
 from bench.experiments.parts.pair_joints import Conveyed, reflection_of
 from bench.json_types import Value
@@ -116,5 +115,4 @@ def widest_swing(conveyed: Sequence[Conveyed], configuration: BenchConfiguration
 
 def _per_kg_n_m(configuration: BenchConfiguration) -> float:
     """What a kilogram more takes at 90 degrees."""
-    rig = configuration.rig
-    return (load_current_a(1.0, pi / 2, rig) - load_current_a(0.0, pi / 2, rig)) * torque_n_m_a(rig)
+    return per_kg_a(configuration.rig) * torque_n_m_a(configuration.rig)

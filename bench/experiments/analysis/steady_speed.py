@@ -1,11 +1,10 @@
 """What the strokes at one level showed, as the results of a trial."""
 
 from collections.abc import Sequence
-from math import isnan
 
 from bench.experiments.analysis.saturation import Ending
 from bench.experiments.parts.stroke import Held, Window
-from bench.json_types import Value
+from bench.json_types import Value, known
 
 
 def steady_speed_results(
@@ -37,11 +36,11 @@ def steady_speed_results(
     return {
         "speed_rad_s": window.stroke.speed_rad_s,
         "motor_speed_rad_s": window.stroke.speed_rad_s * ratio,
-        "remaining_speed_rad_s": _known(remaining_rad_s),
+        "remaining_speed_rad_s": known(remaining_rad_s),
         "current_a": window.current_a,
-        "measured_current_a": _known(window.measured_current_a),
+        "measured_current_a": known(window.measured_current_a),
         "duty": window.duty,
-        "supply_v": _known(window.supply_v),
+        "supply_v": known(window.supply_v),
         "window_s": window.seconds,
         "strokes": len(windows),
         "saturated": saturated,
@@ -56,7 +55,7 @@ def steady_speed_results(
 def _shown(window: Window, ratio: float) -> dict[str, Value]:
     return {
         "motor_speed_rad_s": window.stroke.speed_rad_s * ratio,
-        "motor_acceleration_rad_s2": _known(window.stroke.acceleration_rad_s2 * ratio),
+        "motor_acceleration_rad_s2": known(window.stroke.acceleration_rad_s2 * ratio),
         "current_a": window.current_a,
         "duty": window.duty,
         "window_s": window.seconds,
@@ -70,7 +69,3 @@ def _gains(window: Window, held: Held, least_s: float) -> bool:
     one under a servo, and one that has just been run up.
     """
     return held is not Held.SPEED and window.stroke.acceleration_rad_s2 > 0.0 and window.seconds >= least_s
-
-
-def _known(value: float) -> float | None:
-    return None if isnan(value) else value

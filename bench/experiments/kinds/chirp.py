@@ -10,7 +10,6 @@ from bench.config.quantities import quantity
 from bench.experiments.kind import ExperimentKind
 from bench.experiments.parts.injection import (
     RESTS_S,
-    FloatArray,
     InjectionParameters,
     plan_injection,
     refuse_injection,
@@ -18,6 +17,7 @@ from bench.experiments.parts.injection import (
 )
 from bench.experiments.parts.signal_play import PLAYED_RESULTS
 from bench.experiments.parts.waveforms import fade
+from compensator.lab.recordings.recording import FloatArray
 
 
 class ChirpParameters(InjectionParameters):

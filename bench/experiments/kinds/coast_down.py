@@ -3,7 +3,7 @@
 from dataclasses import replace
 from functools import partial
 from itertools import product
-from math import ceil, isnan
+from math import ceil
 from typing import Annotated, Literal
 
 import numpy as np
@@ -21,7 +21,7 @@ from bench.experiments.parts.profile import SetPoint, run_up
 from bench.experiments.parts.refusal import refuse_coasting, refuse_load, refuse_servo, refuse_speed
 from bench.experiments.parts.search import STILL_COUNTS
 from bench.experiments.parts.stroke import StrokeSettings, refuse_travel
-from bench.json_types import Value, numbers
+from bench.json_types import Value, known, numbers
 from drivers.contract import Command, Mode
 
 Speed = Annotated[float, Field(gt=0)]
@@ -121,14 +121,10 @@ def _results(
         "coast_s": float(time_s[last] - time_s[0]),
         "way_rad": float(way_rad[last] - way_rad[0]),
         "came_to_rest": at_rest,
-        "dry_deceleration_rad_s2": _known(found.dry_deceleration_rad_s2),
-        "time_constant_s": _known(found.time_constant_s),
-        "fit_rms_rad": _known(found.rms_rad),
+        "dry_deceleration_rad_s2": known(found.dry_deceleration_rad_s2),
+        "time_constant_s": known(found.time_constant_s),
+        "fit_rms_rad": known(found.rms_rad),
     }  # fmt: skip
-
-
-def _known(value: float) -> float | None:
-    return None if isnan(value) else value
 
 
 def _excursion(configuration: BenchConfiguration, parameters: CoastDownParameters) -> Excursion:

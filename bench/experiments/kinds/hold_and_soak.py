@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from functools import partial
-from math import ceil, isnan, pi, sin
+from math import ceil, pi, sin
 from typing import Any, Literal, Self
 
 import numpy as np
@@ -24,7 +24,7 @@ from bench.experiments.parts.refusal import (
     refuse_slow_move,
     refuse_speed,
 )
-from bench.json_types import Value, number
+from bench.json_types import Value, known, number
 
 OVERSHOOT_RAD = 0.1  # of the servo, at most
 MIDDLE = 0.5  # of a probe stroke, the part that is measured
@@ -137,8 +137,7 @@ def _swing(parameters: HoldAndSoakParameters, cycles: int, period_s: float) -> I
 
 
 def _temperature_c(readings: list[Reading]) -> float | None:
-    found = float(np.mean([reading.sample.temperature_c for reading in readings]))
-    return None if isnan(found) else found
+    return known(float(np.mean([reading.sample.temperature_c for reading in readings])))
 
 
 def _plan(parameters: HoldAndSoakParameters, configuration: BenchConfiguration) -> list[TrialPlan]:

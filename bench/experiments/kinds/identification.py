@@ -14,7 +14,7 @@ from bench.experiments.kind import ExperimentKind, Parameters, TrialPlan, result
 from bench.experiments.parts.joint import Joint
 from bench.experiments.parts.push import PushSettings, push
 from bench.experiments.parts.refusal import refuse_angles, refuse_coasting, refuse_currents
-from bench.json_types import Value
+from bench.json_types import Value, known
 from compensator.line_fit import Interval
 from drivers.contract import Mode
 
@@ -123,17 +123,13 @@ def _results(found: Identified) -> dict[str, Value]:
         "demand_sign": found.demand_sign,
         "current_sign": found.current_sign,
         "breakaway_a": found.breakaway_a,
-        "velocity_lag_s": _number(found.velocity_lag_s),
+        "velocity_lag_s": known(found.velocity_lag_s),
         **{name: _interval(interval) for name, interval in intervals.items()},
     }
 
 
 def _interval(found: Interval) -> list[Value]:
-    return [_number(found.value), _number(found.low), _number(found.high), found.note]
-
-
-def _number(value: float) -> float | None:
-    return value if abs(value) < float("inf") else None
+    return [known(found.value), known(found.low), known(found.high), found.note]
 
 
 def _duration_s(parameters: IdentificationParameters, _configuration: BenchConfiguration) -> float:

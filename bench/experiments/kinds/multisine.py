@@ -10,7 +10,6 @@ from bench.errors import LimitError
 from bench.experiments.kind import ExperimentKind, FinishedTrial
 from bench.experiments.parts.injection import (
     RESTS_S,
-    FloatArray,
     InjectionParameters,
     plan_injection,
     refuse_band,
@@ -21,6 +20,7 @@ from bench.experiments.parts.refusal import refuse_long_play
 from bench.experiments.parts.signal_play import PLAYED_RESULTS
 from bench.experiments.parts.waveforms import FADE_S, fade
 from bench.json_types import Value
+from compensator.lab.recordings.recording import FloatArray
 
 
 class MultisineParameters(InjectionParameters):

@@ -5,10 +5,10 @@ from math import ceil
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.config.configuration import BenchConfiguration
 from bench.control.cycle import Reading
+from compensator.lab.recordings.recording import FloatArray
 
 MARGIN_RAD = 0.15  # at either limit, for what the servo overshoots when it brakes
 SPEED_SHARE = 0.85  # of the limit: braking begins there, before the limit trips
@@ -60,7 +60,6 @@ class Excursion:
         return ""
 
 
-FloatArray = NDArray[np.float64]
 LEAST_COUNTS = 3.0  # that the slip speed makes between two positions compared; fewer may be noise
 
 

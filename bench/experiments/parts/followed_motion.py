@@ -7,7 +7,7 @@ from math import isnan
 import numpy as np
 
 from bench.config.configuration import BenchConfiguration
-from bench.config.reflected_load import load_current_a, torque_n_m_a
+from bench.config.reflected_load import load_current_a, per_kg_a, torque_n_m_a
 from bench.control.cycle import Reading
 from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.load_follower import LoadFollower
@@ -77,8 +77,7 @@ def errors(followed: Sequence[Followed], load_kg: float, configuration: BenchCon
     if not rows:
         return {"estimates": 0}
     given, plain, truth, half = np.array(rows).T
-    # of eq. (9) at 90 degrees: what a kilogram more would take
-    per_kg = load_current_a(1.0, np.pi / 2, rig) - load_current_a(0.0, np.pi / 2, rig)
+    per_kg = per_kg_a(rig)
     found: dict[str, Value] = {"estimates": len(rows), "in_band": float(np.mean(np.abs(given - truth) <= half))}
     for prefix, error_kg in (("", (given - truth) / per_kg), ("uncompensated_", (plain - truth) / per_kg)):
         found |= {

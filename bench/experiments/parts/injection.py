@@ -4,8 +4,6 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, Literal, Self, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import model_validator
 
 from bench.config.configuration import BenchConfiguration
@@ -15,10 +13,9 @@ from bench.experiments.kind import FinishedTrial, Parameters, TrialPlan, trial_p
 from bench.experiments.parts.refusal import refuse_load
 from bench.experiments.parts.signal_play import Signal, play, refuse_signal
 from bench.json_types import Value, numbers
-from compensator.lab.recordings.recording import Condition
+from compensator.lab.recordings.recording import Condition, FloatArray
 from drivers.contract import Mode
 
-FloatArray = NDArray[np.float64]
 LEAST_SAMPLES = 8.0  # of a period of the highest frequency
 RESTS_S = 2.0  # to the start and back, and to settle, roughly
 

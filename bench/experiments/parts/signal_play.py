@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bench.config.configuration import BenchConfiguration
 from bench.config.quantities import unit_of
@@ -15,9 +14,9 @@ from bench.experiments.parts.joint import Joint, Part
 from bench.experiments.parts.profile import SetPoint
 from bench.experiments.parts.refusal import refuse_angles, refuse_duty, refuse_servo
 from bench.json_types import Value
+from compensator.lab.recordings.recording import FloatArray
 from drivers.contract import Command, Mode
 
-FloatArray = NDArray[np.float64]
 Quantity = Literal["position_rad", "current_a", "duty"]
 OVERSHOOT_RAD = 0.1  # of the servo, at most
 PLAYED_RESULTS = {

@@ -9,7 +9,8 @@ import numpy as np
 
 from bench.config.quantities import unit_of
 from bench.errors import ParameterError
-from bench.experiments.parts.signal_play import FloatArray, Quantity
+from bench.experiments.parts.signal_play import Quantity
+from compensator.lab.recordings.recording import FloatArray
 
 TIMES = ("t_s", "time_s")
 QUANTITIES: tuple[Quantity, ...] = ("position_rad", "current_a", "duty")

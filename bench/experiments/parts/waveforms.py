@@ -6,9 +6,9 @@ A waveform is made for a peak amplitude A [rad] and a peak speed V [rad/s], whic
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from compensator.lab.recordings.recording import FloatArray
+
 Shape = Callable[[FloatArray, float, float], FloatArray]
 FADE_S = 0.5
 

@@ -2,11 +2,10 @@
 
 import io
 import re
-from types import ModuleType
 
 import numpy as np
 
-from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.errors import RecordingSetError, needed
 from bench.recording_set.formats.column_table import SHOWN_OF_NAME, Arrays, ColumnTable, check_unpacked, table_of
 
 _INSIDE = re.compile("(^|/)#[^/]*#(/|$)")  # what MATLAB keeps for itself
@@ -20,7 +19,8 @@ def read(place: str, data: bytes) -> ColumnTable:
     Raises:
         RecordingSetError: h5py is not installed, no HDF5, or no columns of numbers.
     """
-    h5py = _h5py(place)
+    with needed(place, "h5py", "formats", "save as CSV"):
+        import h5py
     arrays: Arrays = {}
     sizes: list[int] = []
     objects: list[str] = []
@@ -60,12 +60,3 @@ def _without_common(arrays: Arrays) -> Arrays:
     if len(groups) == 1 and all("." in name for name in arrays):
         return _without_common({name.partition(".")[2]: values for name, values in arrays.items()})
     return arrays
-
-
-def _h5py(place: str) -> ModuleType:
-    try:
-        import h5py
-    except ImportError as error:
-        message = "needs h5py; install it with: pip install 'friction-bench[formats]', or save as CSV"
-        raise RecordingSetError(place, message) from error
-    return h5py  # type: ignore[no-any-return]

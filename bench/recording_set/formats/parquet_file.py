@@ -2,7 +2,7 @@
 
 import io
 
-from bench.recording_set.errors import RecordingSetError
+from bench.recording_set.errors import RecordingSetError, needed
 from bench.recording_set.formats.column_table import Arrays, ColumnTable, check_unpacked, table_of
 
 
@@ -12,12 +12,9 @@ def read(place: str, data: bytes) -> ColumnTable:
     Raises:
         RecordingSetError: pyarrow is not installed, no Parquet, or no columns of numbers.
     """
-    try:
+    with needed(place, "pyarrow", "formats", "save as CSV"):
         import pyarrow
         from pyarrow import parquet
-    except ImportError as error:
-        message = "needs pyarrow; install it with: pip install 'friction-bench[formats]', or save as CSV"
-        raise RecordingSetError(place, message) from error
     try:
         opened = parquet.ParquetFile(io.BytesIO(data))
         groups = range(opened.metadata.num_row_groups)

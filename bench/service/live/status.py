@@ -73,6 +73,7 @@ class ReadingNow(BaseModel):
 class PromptNow(BaseModel):
     """What the person at the bench is asked to do; the power is off until it is answered."""
 
+    model_config = ConfigDict(from_attributes=True)
     number: int = Field(description="send it with POST /continue")
     sentence: str = Field(examples=["Hang 50 g at the tip of the arm, and stand clear."])
 
@@ -95,7 +96,7 @@ def status_of(found: RunnerStatus, simulated: bool, lease: LeaseNow | None) -> S
         simulated=simulated,
         run=Run.model_validate(found) if found.kind else None,
         reading=None if found.reading is None else _reading(found.reading, _power(found, found.reading)),
-        prompt=None if found.prompt is None else PromptNow(number=found.prompt.number, sentence=found.prompt.sentence),
+        prompt=None if found.prompt is None else PromptNow.model_validate(found.prompt),
         lease=lease,
     )
 

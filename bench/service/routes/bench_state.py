@@ -5,6 +5,7 @@
 
 import asyncio
 from contextlib import suppress
+from dataclasses import asdict
 
 from fastapi import Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
@@ -205,20 +206,8 @@ async def token(caller: Viewer) -> Token:
 
 
 def _drive(found: Description) -> DriveDescription:
-    return DriveDescription(
-        device=found.device,
-        vendor=found.vendor,
-        product=found.product,
-        firmware=found.firmware,
-        serial=found.serial,
-        modes=sorted(mode.value for mode in found.modes),
-        measured=sorted(found.measured),
-        resolution=dict(found.resolution),
-        max_rate_hz=found.max_rate_hz,
-        watchdog_s=found.watchdog_s,
-        watchdog=found.watchdog.value,
-        notes=list(found.notes),
-    )
+    modes, measured = sorted(mode.value for mode in found.modes), sorted(found.measured)
+    return DriveDescription(**asdict(found) | {"modes": modes, "measured": measured, "watchdog": found.watchdog.value})
 
 
 def _limits(limits: Limits) -> list[Limit]:

@@ -1,9 +1,9 @@
 """/benches: the benches of the laboratory, how the link to it is, and its queue."""
 
+from dataclasses import asdict
 from datetime import datetime
-from typing import Annotated
 
-from fastapi import Depends, Path, Request
+from fastapi import Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.json_types import Json
@@ -13,13 +13,12 @@ from bench.service.auth.audit_trail import note
 from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.http.repeated_start import Key, once
-from bench.service.routes.queue_models import Added, NewQueueItem, Tags
+from bench.service.routes.queue_models import Added, ItemId, NewQueueItem, Tags
 from bench.service.services import LabLinkOf, StoreOf
 from bench.store.tables.benches import SeenBench
 from bench.store.tables.lab_queue import NewLabItem
 
 router = api_router(tags=["bench"], dependencies=[Depends(allow_read)])
-ItemId = Annotated[int, Path(ge=1, le=2**31 - 1, description="number of the item")]
 MOST_ITEMS = 1000
 
 
@@ -156,15 +155,5 @@ def remove(link: LabLinkOf, request: Request, item_id: ItemId) -> None:
 
 
 def _seen(found: SeenBench) -> BenchSeen:
-    word = found.word
-    return BenchSeen(
-        name=word.name,
-        host=word.host,
-        state=found.state,
-        doing=word.doing,
-        lease=word.lease,
-        queue=word.queue,
-        waiting=word.waiting,
-        seen_utc=found.seen_utc,
-        silent_s=max(0.0, found.silent_s),
-    )
+    seen = {"state": found.state, "seen_utc": found.seen_utc, "silent_s": max(0.0, found.silent_s)}
+    return BenchSeen(**asdict(found.word) | seen)

@@ -201,7 +201,7 @@ def _represent(guide: Guide, runner: BenchControl) -> Commission:
         step="" if course is None else course.step,
         steps=[StepNow.model_validate(one) for one in STEPS],
         question=None if asked is None else _question(asked),
-        prompt=PromptNow(number=prompt.number, sentence=prompt.sentence) if prompt and guide.is_under_way else None,
+        prompt=PromptNow.model_validate(prompt) if prompt and guide.is_under_way else None,
         evidence=[] if course is None else list(course.evidence),
         refusal="" if course is None else course.refusal,
         first_load=None if course is None or course.ended is None else _first_load(course.ended),

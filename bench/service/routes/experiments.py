@@ -11,11 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from bench.experiments.registry import KINDS, find_kind
 from bench.json_types import Json
-from bench.runs.bench_control import BenchControl
-from bench.runs.lease import Lease
 from bench.service.auth.access import Operator, allow_read, require_operator
 from bench.service.auth.audit_trail import note
-from bench.service.auth.tokens import Caller
 from bench.service.compute import at_bench
 from bench.service.http import conditional
 from bench.service.http.api_router import api_router
@@ -29,8 +26,7 @@ from bench.service.routes.leases import LeaseOf
 from bench.service.routes.queue_models import NewExperiment, Note, Tags
 from bench.service.routes.refused_fields import told_at_its_fields
 from bench.service.services import RunnerOf, StoreOf
-from bench.service.stops import StopsOf, StopsSince
-from bench.store import Store
+from bench.service.stops import StopsOf
 from bench.store.errors import StoreError
 from bench.store.tables.tags import LONGEST_TAG
 
@@ -107,35 +103,22 @@ async def start(
     409 while another one runs, or somebody else has the bench. Watch it with GET /live, end it with POST /stop.
     """
 
-    started = await at_bench(request, _begun, runner, store, lease, caller, request, body, stops, key)
-    response.headers["Location"] = f"{request.url.path}/{started.experiment_id}"
-    return started
-
-
-def _begun(
-    runner: BenchControl,
-    store: Store,
-    lease: Lease,
-    caller: Caller,
-    request: Request,
-    body: NewExperiment,
-    stops: StopsSince,
-    key: str | None,
-) -> Started:
-    """The experiment that has begun, now or with the same key before."""
-
-    body.refuse_mistyped()  # a typing error is no failed start: nothing is recorded
-
     def begin() -> Started:
         with stops.starting(), lease.starting(caller.name), told_at_its_fields(find_kind(body.kind)):
             begun = runner.start(body.kind, body.parameters, body.operator, body.note, body.pace)
         note(request, f"started experiment {begun} ({body.kind})")
         return Started(experiment_id=begun, kind=body.kind)
 
-    started = once(store.access.start_keys, caller.name, key, body.model_dump(), begin, Started)
-    if body.tags:
-        with suppress(StoreError):  # it runs all the same; PATCH can tell them again
-            store.annotate(started.experiment_id, tags=body.tags)
+    def begun_once() -> Started:
+        body.refuse_mistyped()  # a typing error is no failed start: nothing is recorded
+        started = once(store.access.start_keys, caller.name, key, body.model_dump(), begin, Started)
+        if body.tags:
+            with suppress(StoreError):  # it runs all the same; PATCH can tell them again
+                store.annotate(started.experiment_id, tags=body.tags)
+        return started
+
+    started = await at_bench(request, begun_once)
+    response.headers["Location"] = f"{request.url.path}/{started.experiment_id}"
     return started
 
 

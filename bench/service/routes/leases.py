@@ -25,6 +25,7 @@ LeaseOf = Annotated[Lease, Depends(_lease)]
 class LeaseNow(BaseModel):
     """Who has the bench."""
 
+    model_config = ConfigDict(from_attributes=True)
     token: str = Field(description="name of the holder's token", examples=["ada"])
     holder: str = Field(description="as the holder wants to be called", examples=["Ada, room 12"])
     remaining_s: float | None = Field(
@@ -61,9 +62,7 @@ async def require_lease(lease: LeaseOf, caller: Operator) -> None:
 
 def lease_now(found: Held | None) -> LeaseNow | None:
     """As it is answered."""
-    if found is None:
-        return None
-    return LeaseNow(token=found.token, holder=found.holder, remaining_s=found.remaining_s)
+    return None if found is None else LeaseNow.model_validate(found)
 
 
 @router.get("", summary="Who has the bench", dependencies=[Depends(allow_read)])

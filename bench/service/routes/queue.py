@@ -3,7 +3,7 @@
 from functools import partial
 from typing import Annotated
 
-from fastapi import Depends, Path, Query, Request
+from fastapi import Depends, Query, Request
 
 from bench.runs.queue.campaign import Campaign, plan_campaign
 from bench.runs.queue.overview import MOST_SHOWN, queue_state
@@ -19,6 +19,7 @@ from bench.service.routes.queue_models import (
     ChangedItem,
     Cleared,
     Item,
+    ItemId,
     NewQueueItems,
     Plan,
     Queue,
@@ -30,7 +31,6 @@ from bench.service.stops import StopsOf
 from bench.store.tables.queue import NewItem
 
 router = api_router(tags=["queue"], dependencies=[Depends(allow_read)])
-ItemId = Annotated[int, Path(ge=1, le=2**31 - 1, description="number of the item")]
 HOLDER = [Depends(require_lease)]
 taken_in = partial(router.post, status_code=201, dependencies=HOLDER, responses=problems(401, 403, 404, 409, 422))
 

@@ -3,6 +3,7 @@
 from datetime import datetime
 from typing import Annotated, Literal
 
+from fastapi import Path
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
 from bench.config.validation import problems
@@ -13,6 +14,7 @@ from bench.service.http.problems import InvalidFieldsError, field_problems
 from bench.store.tables.queue import NewItem
 from bench.store.tables.tags import LONGEST_TAG, MOST_TAGS
 
+ItemId = Annotated[int, Path(ge=1, le=2**31 - 1, description="number of the item")]
 Tag = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=LONGEST_TAG)]
 Tags = Annotated[list[Tag], Field(max_length=MOST_TAGS, description="free words to find experiments by")]
 Note = Annotated[str, Field(max_length=2000)]

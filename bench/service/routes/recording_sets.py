@@ -15,6 +15,7 @@ from bench.service.auth.access import require_token
 from bench.service.auth.audit_trail import note
 from bench.service.compute import in_lab
 from bench.service.http.api_router import api_router
+from bench.service.http.openapi import Document
 from bench.service.http.problems import problems
 from bench.service.uploads import GuessedColumns, Imported, guess_upload, import_upload
 
@@ -24,22 +25,14 @@ GRACE_S = 60.0  # that an upload may take, whatever its size ...
 LEAST_B_S = 1e6 / 60.0  # ... and what it has to bring beyond [bytes/s]
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 router = api_router("/recording-sets", tags=["recording sets"], dependencies=[Depends(require_token)])
-ZIP_BODY = {
-    "requestBody": {
-        "required": True,
-        "description": "A zipped recording set: rig.toml, trials.csv, one CSV per trial; SI, the unit in the name.",
-        "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
-    }
-}
+UploadName = Annotated[
+    str, Query(min_length=1, max_length=100, pattern=r"^[^/\\\x00-\x1f]+$", examples=["bench 3, gear 12"])
+]
 
 
-FILES_BODY = {
-    "requestBody": {
-        "required": True,
-        "description": "Zipped files of any bench, each a trial: CSV, MAT, NPZ, HDF5, Parquet, JSON lines.",
-        "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
-    }
-}
+def _zip_body(description: str) -> Document:
+    content = {"application/zip": {"schema": {"type": "string", "format": "binary"}}}
+    return {"requestBody": {"required": True, "description": description, "content": content}}
 
 
 @router.post(
@@ -47,14 +40,11 @@ FILES_BODY = {
     status_code=201,
     summary="Import a recording set (zip)",
     responses=problems(401, 408, 413, 415, 422, 503),
-    openapi_extra=ZIP_BODY,
+    openapi_extra=_zip_body(
+        "A zipped recording set: rig.toml, trials.csv, one CSV per trial; SI, the unit in the name."
+    ),
 )
-async def import_set(
-    request: Request,
-    name: Annotated[
-        str, Query(min_length=1, max_length=100, pattern=r"^[^/\\\x00-\x1f]+$", examples=["bench 3, gear 12"])
-    ],
-) -> Imported:
+async def import_set(request: Request, name: UploadName) -> Imported:
     """All or nothing: an error names file, line and column, what was found and what is wanted.
 
     Files of other shapes need a `mapping.toml` in the zip: ask POST /recording-sets/guess for one.
@@ -69,13 +59,11 @@ async def import_set(
     "/guess",
     summary="What the columns of unknown files may be (zip)",
     responses=problems(401, 408, 413, 415, 422, 503),
-    openapi_extra=FILES_BODY,
+    openapi_extra=_zip_body("Zipped files of any bench, each a trial: CSV, MAT, NPZ, HDF5, Parquet, JSON lines."),
 )
 async def guess_set(
     request: Request,
-    name: Annotated[
-        str, Query(min_length=1, max_length=100, pattern=r"^[^/\\\x00-\x1f]+$", examples=["bench 3, gear 12"])
-    ],
+    name: UploadName,
     take: Annotated[list[str] | None, Query(description="what a column is: NAME=QUANTITY[UNIT]", max_length=50)] = None,
     counts_per_turn: Annotated[float | None, Query(gt=0, description="of the joint, for columns in counts")] = None,
     rate_hz: Annotated[float | None, Query(gt=0, description="samples a second, where no column is a time")] = None,

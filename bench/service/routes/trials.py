@@ -26,6 +26,8 @@ from bench.store.tables.trial_search import TrialQuery
 router = api_router("/trials", tags=["trials"], dependencies=[Depends(allow_read)])
 LEAST_PER_CHANNEL = 10
 Sorting = Literal["trial", "name", "kind", "outcome", "rows"]
+KindName = Annotated[str, Query(max_length=100, description="exact kind, such as `steps`")]
+OutcomeName = Annotated[str, Query(max_length=20, description="exact outcome, such as `completed`")]
 TrialId = Annotated[int, Path(ge=1, description="number of the trial")]
 
 
@@ -70,8 +72,8 @@ class Samples(BaseModel):
 def trials(
     store: StoreOf,
     experiment_id: Annotated[int | None, Query(ge=1)] = None,
-    kind: Annotated[str, Query(max_length=100, description="exact kind, such as `steps`")] = "",
-    outcome: Annotated[str, Query(max_length=20, description="exact outcome, such as `completed`")] = "",
+    kind: KindName = "",
+    outcome: OutcomeName = "",
     limit: Limit = 100,
     offset: Offset = 0,
 ) -> Trials:
@@ -120,8 +122,8 @@ def search(
     store: StoreOf,
     words: Annotated[str, Query(max_length=200, description="each is in the name, kind, outcome or a condition")] = "",
     experiment_id: Annotated[int | None, Query(ge=1)] = None,
-    kind: Annotated[str, Query(max_length=100, description="exact kind, such as `steps`")] = "",
-    outcome: Annotated[str, Query(max_length=20, description="exact outcome, such as `completed`")] = "",
+    kind: KindName = "",
+    outcome: OutcomeName = "",
     day: Annotated[date | None, Query(description="on which the experiment was begun")] = None,
     offset_min: OffsetMin = 0,
     sort: Annotated[Sorting, Query(description="what they are sorted by")] = "trial",

@@ -1,7 +1,7 @@
 """Do the records bear out the hash chain: which were altered, which are gone, which nobody entered."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from sqlalchemy import Connection, Select, select
@@ -48,7 +48,7 @@ def _broken_links(connection: Connection, known: dict[str, _Known], noted: str |
         if entry.id != last + 1:
             missing = _numbers("entry", "entries", last + 1, entry.id - 1)
             yield f"chain: {missing} gone: removed past the store"
-        elif entry.link != link_of(before, _fields(entry)):
+        elif entry.link != link_of(before, asdict(entry)):
             of = f"{entry.subject} {entry.row_id}"
             yield f"chain: entry {entry.id} ({of}) is not what was written, or stood elsewhere"
         last, before, seen = entry.id, entry.link, seen or entry.link == noted
@@ -99,10 +99,6 @@ def _problem(
     except (ValueError, TypeError) as error:
         return f"cannot be read any more ({error}); it was sound at {_moment(entry)}"
     return None if digest == entry.digest else f"is not what was kept: altered past the store after {_moment(entry)}"
-
-
-def _fields(entry: Entry) -> dict[str, object]:
-    return {name: getattr(entry, name) for name in ("id", "at_utc", "subject", "row_id", "state", "digest")}
 
 
 def _numbers(one: str, more: str, first: int, last: int) -> str:

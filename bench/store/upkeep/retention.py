@@ -6,34 +6,13 @@ from datetime import datetime, timedelta
 
 from sqlalchemy import Connection, delete, select, update
 
+from bench.config.sections import RetentionSettings
 from bench.store.database import Database
 from bench.store.records import HIDDEN, REMOVING
 from bench.store.schema import CALIBRATION, EXPERIMENT, SAMPLE_BLOCK, STUDY, TRIAL
 from bench.store.tables import chain
 from bench.store.tables.experiments import now
 from bench.store.tables.samples import SAMPLE_BYTES
-
-
-@dataclass(frozen=True, slots=True)
-class Policy:
-    """How long experiments are kept after their end [days]; None: for ever. Where several apply, the shortest.
-
-    Attributes:
-        completed_days: those that completed, imports too.
-        incomplete_days: those that were stopped, tripped, failed, interrupted or refused.
-        simulated_days: those of a simulated drive, however they ended.
-    """
-
-    completed_days: float | None = None
-    incomplete_days: float | None = None
-    simulated_days: float | None = None
-    audit_days: float | None = None
-
-    def keeps_days(self, outcome: str, source: str) -> float | None:
-        """How long an experiment is kept [days]."""
-        limits = [self.completed_days if outcome == "completed" else self.incomplete_days]
-        limits.append(self.simulated_days if source == "simulated" else None)
-        return min((limit for limit in limits if limit is not None), default=None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +39,7 @@ class Retention:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def expired(self, policy: Policy) -> list[Expired]:
+    def expired(self, policy: RetentionSettings) -> list[Expired]:
         """What the policy does not keep, oldest first. Nothing is removed."""
         moment = now()
         with self._database.reading() as connection:

@@ -12,6 +12,7 @@ from bench.service.compute import in_lab
 from bench.service.http.api_router import api_router
 from bench.service.http.pages import Limit, Offset, Page, cut
 from bench.service.http.problems import problems
+from bench.service.routes.studies import StudyId
 from bench.service.services import RunnerOf, StoreOf
 from bench.store import Store
 from bench.store.errors import NotFoundError
@@ -32,7 +33,6 @@ else:
 
 router = api_router("/studies", tags=["studies"], dependencies=[Depends(allow_read)])
 made = partial(router.post, status_code=201, dependencies=[Depends(require_token)], responses=problems(401, 404, 422))
-StudyId = Annotated[int, Path(ge=1, description="number of the study")]
 
 
 class Studies(Page):

@@ -3,7 +3,7 @@
 from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
-from fastapi import Depends, Path, Query, Request, Response
+from fastapi import Depends, Query, Request, Response
 
 from bench.service.auth.access import allow_read
 from bench.service.compute import in_lab
@@ -11,6 +11,7 @@ from bench.service.http import conditional
 from bench.service.http.api_router import api_router
 from bench.service.http.downloads import attachment
 from bench.service.http.problems import problems
+from bench.service.routes.studies import StudyId
 from bench.service.services import RunnerOf, StoreOf
 from bench.study.models.closed_loop import ClosedLoop
 from bench.study.models.comparison import Comparison
@@ -36,7 +37,6 @@ else:
 
 REPORT = {"schema": {"type": "string"}, "example": "<!doctype html><title>Study 1</title>..."}
 router = api_router("/studies", tags=["studies"], dependencies=[Depends(allow_read)])
-StudyId = Annotated[int, Path(ge=1, description="number of the study")]
 ModelId = Annotated[int | None, Query(ge=1, description="which model; without it, the newest of the study")]
 Refine = Annotated[
     bool, Query(description="refine the coefficients by it, too; nothing of that is kept, and it takes longer")

@@ -1,8 +1,8 @@
 """/studies/N/rounds: what was recorded for a study is picked up, and what it asks for next is queued, in one call."""
 
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-from fastapi import Depends, Path, Request
+from fastapi import Depends, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.errors import BusyError
@@ -14,6 +14,7 @@ from bench.service.http.api_router import api_router
 from bench.service.http.problems import problems
 from bench.service.http.repeated_start import Key, once
 from bench.service.routes.leases import require_lease
+from bench.service.routes.studies import StudyId
 from bench.service.services import ConductorOf, RunnerOf, StoreOf
 from bench.store.tables.queue import RUNNING, WAITING, NewItem
 from bench.study.models.study import note_for
@@ -25,7 +26,6 @@ else:
     from bench.service.later import bench
 
 router = api_router("/studies", tags=["studies"], dependencies=[Depends(allow_read)])
-StudyId = Annotated[int, Path(ge=1, description="number of the study")]
 
 
 class RoundSize(BaseModel):
