@@ -453,6 +453,11 @@ class Dataset:
             raise NotApplicableError(
                 f"{effect.name} does not show in {self.effort_definition.title}; it does in {', '.join(effect.efforts)}"
             )
+        if effect.by_angle and self.facts.joint == "linear":
+            raise NotApplicableError(
+                f"{effect.name} goes by the angle of an arm, and this joint is linear: what it lifts weighs the same "
+                'everywhere; add offset, which does, or, if the joint turns, put joint = "rotary" into rig.toml'
+            )
         if effect.by_position and self.turns_on:
             raise NotApplicableError(
                 f"{effect.name} goes by the position, and the shaft turns on for "
