@@ -12,7 +12,13 @@ from scipy.sparse.csgraph import connected_components
 
 from compensator.lab.effects.effect import Effect
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.intervals import ParameterEstimate, estimates
+from compensator.lab.model.intervals import (
+    INERTIA,
+    LEAST_ACCELERATION,
+    ParameterEstimate,
+    acceleration_over_noise,
+    estimates,
+)
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 TAKES_PART = 0.1  # of a column, that another one makes
@@ -57,7 +63,7 @@ def left_open(fit: Fit, parameters: Sequence[ParameterEstimate] | None = None) -
     """
     known = list(_coefficients(fit))
     values = parameters if parameters is not None else estimates(fit)
-    return [*_dropped(fit, known), *_together(fit, known, values), *_by_channel(fit)]
+    return [*_dropped(fit, known), *_in_noise(fit), *_together(fit, known, values), *_by_channel(fit)]
 
 
 def _coefficients(fit: Fit) -> Iterator[_Coefficient]:
@@ -91,6 +97,16 @@ def _settled_by(fit: Fit, one: _Coefficient, others: list[_Coefficient]) -> str:
     if len(loads) == 1 and all(other.effect is one.effect for other in others):
         return f"all of them hang {loads.pop():.4g} kg: trials with another load settle it"
     return f"what settles it: {one.effect.excited_by}"
+
+
+def _in_noise(fit: Fit) -> Iterator[str]:
+    """The inertia, where noise of the position makes most of the acceleration."""
+    for effect in fit.effects:
+        if effect.name == INERTIA and (ratio := acceleration_over_noise(fit)) < LEAST_ACCELERATION:
+            yield (
+                f"Inertia is not told by these trials: the acceleration has {ratio:.2g} times the power of noise of "
+                f"the position, and {LEAST_ACCELERATION:g} times is needed; what settles it: {effect.excited_by}"
+            )
 
 
 def _together(fit: Fit, known: list[_Coefficient], values: Sequence[ParameterEstimate]) -> Iterator[str]:

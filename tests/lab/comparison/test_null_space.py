@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from compensator.lab.comparison.null_space import left_open
-from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_model
+from compensator.lab.model.intervals import estimates
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from tests.lab.synthetic import FACTS, Bench, Joint, Plan, plans, recordings
+from tests.lab.synthetic import FACTS, Bench, Joint, Plan, Truth, noise_of, plans, recordings
 
 DEFAULT = default_effects(FACTS)
 
@@ -74,6 +75,33 @@ def test_what_noise_leaves_correlated_is_known_in_combination_only():
 def said(made: list[Recording]) -> list[str]:
     fit = fit_model(make_dataset(made, FACTS, Processing(8.0)), DEFAULT, shapes={"stribeck": (2.0, 1.0)})
     return [one for one in left_open(fit) if "in combination only" in one]
+
+
+@pytest.mark.parametrize(("swing_rad", "is_told"), [(0.0, False), (3e-4, False), (0.03, True)])
+def test_an_inertia_of_encoder_noise_is_not_told(swing_rad, is_told):
+    """Constant speeds, forward and backward; swinging meanwhile by less, and by far more, than the encoder's noise."""
+    random = np.random.default_rng(6)
+    made = [at_constant_speed(speed, swing_rad, random) for speed in (0.1, -0.1, 0.3, -0.3, 0.8, -0.8)]
+    fit = fit_model(make_dataset(made, FACTS, Processing(4.0)), DEFAULT)
+    (inertia,) = [one for one in estimates(fit) if one.parameter == "inertia"]
+    sentences = [one for one in left_open(fit) if one.startswith("Inertia is not told by these trials: ")]
+    if is_told:
+        assert inertia.low < 0.02 < inertia.high
+        assert not sentences
+    else:
+        assert np.isnan([inertia.value, inertia.low, inertia.high]).all()
+        assert inertia.note == "the acceleration is hardly more than noise of the position: these trials do not tell it"
+        assert sentences[0].endswith("; what settles it: " + effect_named("inertia").excited_by)
+
+
+def at_constant_speed(rad_s: float, swing_rad: float, random: np.random.Generator) -> Recording:
+    time_s, w = np.arange(0.0, 12.0, 1.0 / 200.0), 2.0 * np.pi * 0.7
+    swing = swing_rad * np.sin(w * time_s)
+    q, v, a = rad_s * time_s + swing, rad_s + swing_rad * w * np.cos(w * time_s), -(w**2) * swing
+    truth = Truth(time_s, q, v, a, 0.0, 0.3, 25.0 + 0.0 * time_s)
+    torque = Joint().effort(truth) + noise_of(Bench(), len(time_s), random)
+    channels = {"time_s": time_s, "position_rad": q + 3e-4 * random.standard_normal(len(q)), "torque_n_m": torque}
+    return Recording(f"speed-{rad_s:g}", "speed", {"load_kg": 0.0, "arm_m": 0.3}, channels)
 
 
 def test_a_voltage_holds_more_than_torque(several, one_load):
