@@ -26,19 +26,25 @@ CORRELATED = 0.95  # of two coefficients: from here on it is their combination t
 UNCERTAIN = 0.5  # of its value, that the half of a coefficient's 95 % interval is
 
 _VOLTAGE = (
-    "The effort is a voltage (duty x supply), which holds the back-EMF and the drop over the winding: {scale}viscous "
-    "friction and the back-EMF constant are one number. A measured current settles it, or a coast-down, in which the "
-    "winding is open and friction brakes alone"
+    "The effort is the {title}, which holds the back-EMF and the drop over the winding: {scale}viscous friction and "
+    "the back-EMF constant are one number. A measured current settles it, or a coast-down, in which the winding is "
+    "open and friction brakes alone"
 )
 _ESTIMATE = (
     "The current is computed from duty, supply and speed: what the back-EMF constant is off by looks like viscous "
     "friction, and what the winding's resistance is off by like a scale of all coefficients. A measured current "
     "settles it, or a coast-down for the friction and a known weight for the scale"
 )
-_CURRENT = (
-    "The rig tells no torque constant, so that every coefficient is in A: torque constant and friction are known as "
-    "their ratio only. Add motor.torque_constant_n_m_a and gear.ratio to the rig, or hang known loads"
-)
+_CURRENT = {
+    "rotary": (
+        "The rig tells no torque constant, so that every coefficient is in A: torque constant and friction are known "
+        "as their ratio only. Add motor.torque_constant_n_m_a and gear.ratio to the rig, or hang known loads"
+    ),
+    "linear": (
+        "The effort is a current, so that every coefficient is in A: force constant and friction are known as their "
+        "ratio only. Record the force (force_n)"
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -148,18 +154,17 @@ def _is_uncertain(value: ParameterEstimate | None) -> bool:
 
 
 def _by_channel(fit: Fit) -> Iterator[str]:
-    effort = fit.dataset.effort_definition
+    effort, joint = fit.dataset.effort_definition, fit.dataset.facts.joint
     if effort.quantity == "terminal_voltage":
         per_torque = _by_known_loads(fit)
-        apart = (
-            "torque constant and winding resistance are known as their ratio only, and " if per_torque is None else ""
-        )
+        constant = "torque constant" if joint == "rotary" else "force constant"
+        apart = f"{constant} and winding resistance are known as their ratio only, and " if per_torque is None else ""
         told = "" if per_torque is None else f" (1 N m is {per_torque:.3g} V, by the loads)"
-        yield _VOLTAGE.format(scale=apart) + told
+        yield _VOLTAGE.format(title=effort.title, scale=apart) + told
     elif effort.quantity == "current_estimate":
         yield _ESTIMATE
     elif effort.quantity == "current" and effort.unit == "A" and _by_known_loads(fit) is None:
-        yield _CURRENT
+        yield _CURRENT[joint]
 
 
 def _by_known_loads(fit: Fit) -> float | None:

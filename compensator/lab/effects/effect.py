@@ -202,7 +202,7 @@ class Parameter:
 
     Attributes:
         name: as shown.
-        unit: a template; `{effort}` and `{position}` are replaced by the study's units.
+        unit: a template; `{effort}`, `{position}` and `{inertia}` are replaced by the study's units.
         low, high: what is physically possible, in `unit`.
     """
 
@@ -213,7 +213,8 @@ class Parameter:
 
     def unit_in(self, effort_unit: str, position_unit: str) -> str:
         """The unit, with the study's own effort and position units."""
-        return self.unit.format(effort=effort_unit, position=position_unit)
+        inertia = "kg" if position_unit == "m" else "kg m2"
+        return self.unit.format(effort=effort_unit, position=position_unit, inertia=inertia)
 
 
 def shape_parameters(names: Sequence[str], units: Sequence[str]) -> list[Parameter]:

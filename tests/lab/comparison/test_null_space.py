@@ -9,6 +9,7 @@ from compensator.lab.comparison.null_space import left_open
 from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.intervals import estimates
+from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
@@ -127,3 +128,23 @@ def test_a_current_without_torque_constant_needs_known_loads(several, one_load):
     assert "The rig tells no torque constant" in told(with_channel(one_load, **current))[-1]
     known = replace(FACTS, torque_per_current_n_m_a=0.5)
     assert not any("torque constant" in one for one in told(with_channel(one_load, **current), facts=known))
+
+
+def linear(one: Recording, **channels: np.ndarray) -> Recording:
+    """The same motion in m."""
+    kept = {"time_s": one.channels["time_s"], "position_m": one.channels["position_rad"]}
+    return replace(one, channels=kept | channels)
+
+
+def test_a_linear_joint_is_told_of_in_its_own_words():
+    facts = Facts(joint="linear")
+    made = recordings(Joint(arm_moment=0.0), None, plans(loads_kg=(0.0, 0.2)), seed=4)
+    by_current = [linear(one, current_a=one.channels["torque_n_m"]) for one in made]
+    (sentence,) = [one for one in told(by_current, default_effects(facts), facts) if "in A" in one]
+    assert "force constant and friction are known as their ratio only. Record the force (force_n)" in sentence
+    by_voltage = [linear(one, voltage_v=one.channels["torque_n_m"]) for one in made]
+    fit = fit_model(make_dataset(by_voltage, facts, Processing(8.0)), default_effects(facts))
+    assert left_open(fit)[-1].startswith("The effort is the terminal voltage, which holds ")
+    assert "force constant and winding resistance" in left_open(fit)[-1]
+    units = {one.parameter: one.unit for one in estimates(fit)}
+    assert units["load inertia scale"] == "V s2/(m kg)"
