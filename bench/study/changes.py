@@ -37,6 +37,10 @@ _ADVICE = {
     ),
 }
 """What was done -> what to do then, where the error falls for sure, rises for sure, neither, or for sure by nothing."""
+_DISAGREE = (
+    "The two disagree: the gain, by which a diagnosis judges, speaks {} it, and the error, in which all rows count "
+    "alike, does not; `study compare` of both models shows in which trials."
+)
 
 
 @progress.stages(CHANGE)
@@ -133,6 +137,8 @@ def _sentence(done: str, effect: str, error: str, before: float, after: float, g
     small = max(map(abs, (gain.low, gain.high))) < LEAST_GAIN
     if small or (advice != neither and abs(gain.value) < LEAST_GAIN):
         advice = slight
+    elif advice != neither and gain.is_against(before, after):
+        advice = _DISAGREE.format("for" if advice == helps else "against")
     if impossible == TOLD:
         advice = f"It is {TOLD}, and no find; {advice[0].lower()}{advice[1:]}"
     elif impossible:

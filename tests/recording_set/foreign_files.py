@@ -212,11 +212,8 @@ def _units() -> dict[str, Foreign]:
         "speed of the motor behind the gear of a rig": Foreign(
             "a.csv", motor_side(60.3), known=Known({}, gear_ratio=60.3), truth=both),
         "speed of nothing known": Foreign("a.csv", motor_side(2.3), asks="changes 0.435 times as fast"),
-        "speed of nothing known, said": Foreign(
-            "a.csv", motor_side(2.3), known=Known(read_said(["Winkel [deg]=position[deg]"])),
-            truth={**TRUTH, "velocity_rad_s": 2.3 * VELOCITY_RAD_S}),
         "speed of nothing known, which no import takes": Foreign(
-            "a.csv", motor_side(3.3), known=Known(read_said(["Winkel [deg]=position[deg]"])),
+            "a.csv", motor_side(2.3), known=Known(read_said(["Winkel [deg]=position[deg]"])),
             asks=r"no import takes: say --take 'Drehzahl .U/min.=ignore'"),
         "counts of another turn": Foreign("a.csv", _text({
             "t": TIME_S, "enc": COUNTS, "vel [rad/s]": VELOCITY_RAD_S, "i": CURRENT_A}),

@@ -322,17 +322,26 @@ def test_a_gain_unlike_the_errors_beside_it_says_why(after, told):
 
 
 @pytest.mark.parametrize(
-    ("gain", "told"),
+    ("gain", "after", "told"),
     [
-        (Gain(-0.676, -0.8, -0.5), "Dropping it harms: add it again."),
-        (Gain(0.0, -0.1, 0.1), "dropping it does no harm that these trials show."),
-        (Gain(0.2, 0.1, 0.3), "Dropping it helps: the model is better without it."),
-        (Gain(0.001, 0.0004, 0.0014), "that matters, being under 0.5%: the model is as good without it."),
-        (Gain(-0.0049, -0.02, -0.001), "that matters, being under 0.5%: the model is as good without it."),
+        (Gain(-0.676, -0.8, -0.5), 0.0785, "Dropping it harms: add it again."),
+        (Gain(0.0, -0.1, 0.1), 0.0785, "dropping it does no harm that these trials show."),
+        (Gain(0.2, 0.1, 0.3), 0.0375, "Dropping it helps: the model is better without it."),
+        (Gain(0.001, 0.0004, 0.0014), 0.0785, "that matters, being under 0.5%: the model is as good without it."),
+        (Gain(-0.0049, -0.02, -0.001), 0.0785, "that matters, being under 0.5%: the model is as good without it."),
     ],
 )
-def test_what_is_said_after_an_effect_was_dropped_is_about_dropping_it(gain, told):
-    assert _sentence("Dropping", "elasticity", "held-out error", 0.0468, 0.0785, gain).endswith(told)
+def test_what_is_said_after_an_effect_was_dropped_is_about_dropping_it(gain, after, told):
+    assert _sentence("Dropping", "elasticity", "held-out error", 0.0468, after, gain).endswith(told)
+
+
+@pytest.mark.parametrize(("gain", "after", "way"), [(0.2, 0.0785, "for"), (-0.2, 0.0375, "against")])
+@pytest.mark.parametrize("done", ["Adding", "Dropping"])
+def test_a_gain_that_the_error_speaks_against_is_no_advice(done, gain, after, way):
+    """Rows that no other trial tells of may fill the plain error, and hardly count in the gain: neither is hidden."""
+    sentence = _sentence(done, "spring", "held-out error", 0.0468, after, Gain(gain, gain - 0.1, gain + 0.1))
+    assert f"The two disagree: the gain, by which a diagnosis judges, speaks {way} it, and the error" in sentence
+    assert sentence.endswith("`study compare` of both models shows in which trials.")
 
 
 @pytest.mark.parametrize(

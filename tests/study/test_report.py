@@ -5,12 +5,13 @@ import re
 import pytest
 
 from bench.config.configuration import default_configuration
+from bench.report import html_page
 from bench.study.changes import add_effect
 from bench.study.create import create_study, describe
 from bench.study.ladder import ladder
 from bench.study.report.model_sections import measured_section
 from bench.study.report.report import report, report_html
-from tests.lab.synthetic import plans
+from tests.lab.synthetic import Plan, plans
 from tests.study.conftest import imported
 
 
@@ -80,6 +81,20 @@ def test_evidence_stands_in_words_and_pictures(store, number, sections):
 def test_another_rig_leaves_out_what_to_record_next_and_says_why(sections):
     (sentence,) = sections["Trials to record next"].sentences
     assert "of another rig than this bench" in sentence
+
+
+def test_trials_that_show_nothing_are_filed_with_why(store):
+    """A joint that is held at four angles: of all rows none slides."""
+    holds = [Plan(f"hold-{n}", [], centre=0.3 * n - 0.5, load_kg=0.1 * n) for n in range(4)]
+    study = create_study(store, "holds", [imported(store, holds)], cutoff_hz=6.0, rows="all").study_id
+    title, sections = report(store, study, default_configuration())
+    found = {section.title: section for section in sections}
+    (missing,) = found[f"What is missing from the newest model, {store.models(study)[0].id}"].sentences
+    assert missing.startswith("What is missing cannot be judged: ")
+    assert "a diagnosis needs 20: record longer strokes at a steady speed" in missing
+    assert missing in found["In short"].sentences
+    assert found["The ladder"].tables
+    assert title in html_page(title, sections)
 
 
 def test_the_page_is_whole_and_escaped(store, number):

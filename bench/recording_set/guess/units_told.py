@@ -12,7 +12,7 @@ from bench.recording_set.guess.evidence import NEAR, are_whole, gear_behind, per
 from bench.recording_set.guess.names import UNITS_OF
 from bench.recording_set.mapping import Column
 from bench.recording_set.units import TURN, UNITS, Unit, unit_named
-from compensator.lab.recordings.channel_checks import FACTOR
+from compensator.lab.recordings.channel_checks import AGREE
 from compensator.lab.recordings.recording import CHANNELS, FloatArray
 
 MOTION = ("position", "velocity", "target")
@@ -32,7 +32,6 @@ _CHANNEL = {
 _PLAIN = "no known unit in its name: taken as SI"
 LARGE_RATE = 300.0  # without a unit: rad/s of a motor, or rpm
 OUTLINE = 400  # values of a column that are shown
-AGREE = 1.5  # factor between the rate of a position and a speed: more is another unit
 
 
 class Units:
@@ -244,8 +243,6 @@ class Units:
         elif not (sure or self._is_sure("velocity")):
             units = [near.name, position.name] if near else [position.name, "deg", "rad"]
             self._ask("position", found, units, without)
-        elif 1.0 / FACTOR < ratio < FACTOR:
-            self.notes.append(f"'{name}' {found}: taken as said; --take '{speed}=ignore' leaves the speed out")
         else:
             self.questions.append(f"'{name}' {found}, which no import takes: say {without}")
 

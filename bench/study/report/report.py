@@ -14,6 +14,7 @@ from bench.study.compare import compare
 from bench.study.create import describe
 from bench.study.diagnosis.diagnose import diagnose
 from bench.study.ladder import ladder
+from bench.study.models.comparison import Comparison
 from bench.study.models.ladder import Ladder
 from bench.study.models.stages import DIAGNOSING, MOVING, REPORT, SUGGESTING
 from bench.study.models.study import Study
@@ -128,17 +129,25 @@ def report(store: Store, study_id: int, configuration: BenchConfiguration | None
     ]
     progress.enter(DIAGNOSING)
     if first != newest:
-        title = f"What was missing from the first model, {first}"
-        sections.append(diagnosis_section(title, diagnose(store, study_id, first), before))
-    last = diagnose(store, study_id)
+        sections.append(_missing(f"What was missing from the first model, {first}", store, before)[1])
+    sentence, last = _missing(f"What is missing from the newest model, {newest}", store, now)
     pictures = [ladder_figure(rungs), measured_figure(before, now)]
-    sections.insert(0, head_section(study, rungs, last.sentence, store, pictures))
-    sections.append(diagnosis_section(f"What is missing from the newest model, {newest}", last, now))
+    sections = [head_section(study, rungs, sentence, store, pictures), *sections, last]
     progress.enter(SUGGESTING)
     if configuration is not None:
         sections.append(_next(store, study_id, configuration))
     sections.append(provenance_section(study, store))
     return f"Study {study_id}: {study.name}", in_words(sections, [one.name for one in study.trials])
+
+
+def _missing(title: str, store: Store, compared: Comparison) -> tuple[str, Section]:
+    """What a model lacks, in a sentence and as a section; why nobody can tell where these trials show nothing."""
+    try:
+        found = diagnose(store, compared.study_id, compared.model_id)
+    except BenchError as error:
+        why = f"What is missing cannot be judged: {error}."
+        return why, Section(title, [why])
+    return found.sentence, diagnosis_section(title, found, compared)
 
 
 def _next(store: Store, study_id: int, configuration: BenchConfiguration) -> Section:

@@ -14,6 +14,7 @@ from numba import njit
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 LONGEST_STEP_S = 1e-3
+FARTHEST = 1e6  # rad or m: a joint that runs away stops there, before its numbers end
 
 
 class Drive(NamedTuple):
@@ -111,4 +112,6 @@ def _moved(
             free = push / resists
             v = np.sign(free) * max(abs(free) - holds / resists, 0.0)
             q += dt * v
+            if abs(q) > FARTHEST:
+                q, v = FARTHEST * np.sign(q), 0.0
     return position, added

@@ -12,7 +12,13 @@ from scipy.sparse.csgraph import connected_components
 
 from compensator.lab.effects.effect import Effect
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.intervals import ParameterEstimate, estimates
+from compensator.lab.model.intervals import (
+    INERTIA,
+    LEAST_ACCELERATION,
+    ParameterEstimate,
+    acceleration_over_noise,
+    estimates,
+)
 from compensator.lab.recordings.recording import BoolArray, FloatArray
 
 TAKES_PART = 0.1  # of a column, that another one makes
@@ -20,19 +26,25 @@ CORRELATED = 0.95  # of two coefficients: from here on it is their combination t
 UNCERTAIN = 0.5  # of its value, that the half of a coefficient's 95 % interval is
 
 _VOLTAGE = (
-    "The effort is a voltage (duty x supply), which holds the back-EMF and the drop over the winding: {scale}viscous "
-    "friction and the back-EMF constant are one number. A measured current settles it, or a coast-down, in which the "
-    "winding is open and friction brakes alone"
+    "The effort is the {title}, which holds the back-EMF and the drop over the winding: {scale}viscous friction and "
+    "the back-EMF constant are one number. A measured current settles it, or a coast-down, in which the winding is "
+    "open and friction brakes alone"
 )
 _ESTIMATE = (
     "The current is computed from duty, supply and speed: what the back-EMF constant is off by looks like viscous "
     "friction, and what the winding's resistance is off by like a scale of all coefficients. A measured current "
     "settles it, or a coast-down for the friction and a known weight for the scale"
 )
-_CURRENT = (
-    "The rig tells no torque constant, so that every coefficient is in A: torque constant and friction are known as "
-    "their ratio only. Add motor.torque_constant_n_m_a and gear.ratio to the rig, or hang known loads"
-)
+_CURRENT = {
+    "rotary": (
+        "The rig tells no torque constant, so that every coefficient is in A: torque constant and friction are known "
+        "as their ratio only. Add motor.torque_constant_n_m_a and gear.ratio to the rig, or hang known loads"
+    ),
+    "linear": (
+        "The effort is a current, so that every coefficient is in A: force constant and friction are known as their "
+        "ratio only. Record the force (force_n)"
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -57,7 +69,7 @@ def left_open(fit: Fit, parameters: Sequence[ParameterEstimate] | None = None) -
     """
     known = list(_coefficients(fit))
     values = parameters if parameters is not None else estimates(fit)
-    return [*_dropped(fit, known), *_together(fit, known, values), *_by_channel(fit)]
+    return [*_dropped(fit, known), *_in_noise(fit), *_together(fit, known, values), *_by_channel(fit)]
 
 
 def _coefficients(fit: Fit) -> Iterator[_Coefficient]:
@@ -91,6 +103,16 @@ def _settled_by(fit: Fit, one: _Coefficient, others: list[_Coefficient]) -> str:
     if len(loads) == 1 and all(other.effect is one.effect for other in others):
         return f"all of them hang {loads.pop():.4g} kg: trials with another load settle it"
     return f"what settles it: {one.effect.excited_by}"
+
+
+def _in_noise(fit: Fit) -> Iterator[str]:
+    """The inertia, where noise of the position makes most of the acceleration."""
+    for effect in fit.effects:
+        if effect.name == INERTIA and (ratio := acceleration_over_noise(fit)) < LEAST_ACCELERATION:
+            yield (
+                f"Inertia is not told by these trials: the acceleration has {ratio:.2g} times the power of noise of "
+                f"the position, and {LEAST_ACCELERATION:g} times is needed; what settles it: {effect.excited_by}"
+            )
 
 
 def _together(fit: Fit, known: list[_Coefficient], values: Sequence[ParameterEstimate]) -> Iterator[str]:
@@ -132,18 +154,17 @@ def _is_uncertain(value: ParameterEstimate | None) -> bool:
 
 
 def _by_channel(fit: Fit) -> Iterator[str]:
-    effort = fit.dataset.effort_definition
+    effort, joint = fit.dataset.effort_definition, fit.dataset.facts.joint
     if effort.quantity == "terminal_voltage":
         per_torque = _by_known_loads(fit)
-        apart = (
-            "torque constant and winding resistance are known as their ratio only, and " if per_torque is None else ""
-        )
+        constant = "torque constant" if joint == "rotary" else "force constant"
+        apart = f"{constant} and winding resistance are known as their ratio only, and " if per_torque is None else ""
         told = "" if per_torque is None else f" (1 N m is {per_torque:.3g} V, by the loads)"
-        yield _VOLTAGE.format(scale=apart) + told
+        yield _VOLTAGE.format(title=effort.title, scale=apart) + told
     elif effort.quantity == "current_estimate":
         yield _ESTIMATE
     elif effort.quantity == "current" and effort.unit == "A" and _by_known_loads(fit) is None:
-        yield _CURRENT
+        yield _CURRENT[joint]
 
 
 def _by_known_loads(fit: Fit) -> float | None:

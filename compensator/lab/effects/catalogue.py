@@ -167,8 +167,8 @@ def withheld(names: Iterable[str]) -> Iterator[None]:
 
 def candidates(present: Sequence[str], facts: Facts) -> list[Effect]:
     """Effects of the catalogue that a model does not have yet and that this joint can have."""
-    impossible = {"gravity", "centre_of_mass_angle"} if facts.horizontal or facts.joint == "linear" else set()
-    impossible |= {"measured_load"} if "gravity" in present else set()  # it holds the weight
+    impossible = {"measured_load"} if "gravity" in present else set()  # it holds the weight
     unknown = {*present, *impossible, *_WITHHELD.get()}
-    possible = [effect for name, effect in catalogue().items() if name not in unknown]
+    weightless = facts.horizontal or facts.joint == "linear"
+    possible = [e for name, e in catalogue().items() if name not in unknown and not (e.by_angle and weightless)]
     return [effect for effect in possible if set(effect.after) <= set(present)]

@@ -202,7 +202,7 @@ class Parameter:
 
     Attributes:
         name: as shown.
-        unit: a template; `{effort}` and `{position}` are replaced by the study's units.
+        unit: a template; `{effort}`, `{position}` and `{inertia}` are replaced by the study's units.
         low, high: what is physically possible, in `unit`.
     """
 
@@ -213,7 +213,8 @@ class Parameter:
 
     def unit_in(self, effort_unit: str, position_unit: str) -> str:
         """The unit, with the study's own effort and position units."""
-        return self.unit.format(effort=effort_unit, position=position_unit)
+        inertia = "kg" if position_unit == "m" else "kg m2"
+        return self.unit.format(effort=effort_unit, position=position_unit, inertia=inertia)
 
 
 def shape_parameters(names: Sequence[str], units: Sequence[str]) -> list[Parameter]:
@@ -317,6 +318,7 @@ class Effect:
         after: effects that a model must have before this one can be missing.
         grows: its shape is a list of orders, 0 for none; each further one is taken as long as the rows pay for it.
         by_position: it goes by the position itself, which a shaft that turns on and on does not have.
+        by_angle: it goes by the angle of an arm, which a linear joint does not have.
         goes_round: its shape is an order of the position, as a force or against the motion: one that its shapes lack
             is found where no gear ratio tells which these are; None: it has no such shape.
         told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
@@ -365,6 +367,7 @@ class Effect:
     misreads: Callable[[Motion, Shape], FloatArray] | None = None
     slope: Callable[[Motion, Shape], FloatArray] | None = None
     by_position: bool = False
+    by_angle: bool = False
     after: tuple[str, ...] = ()
     grows: bool = False
     goes_round: Round | None = None

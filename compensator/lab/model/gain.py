@@ -27,9 +27,11 @@ class Gain:
 
     def is_unlike(self, before: float, after: float) -> bool:
         """Whether it is notably not what the errors themselves have, each row counting alike, or they rise."""
-        return before > 0.0 and (
-            abs(self.value - (1.0 - after / before)) > NOTABLE or self.value > 0.0 > before - after
-        )
+        return before > 0.0 and (abs(self.value - (1.0 - after / before)) > NOTABLE or self.is_against(before, after))
+
+    def is_against(self, before: float, after: float) -> bool:
+        """Whether the errors themselves, as they are shown, go the other way."""
+        return self.value * (before - after) < 0.0 and f"{before:.2%}" != f"{after:.2%}"
 
     def in_words(self, before: float, after: float) -> str:
         """The gain and its interval, beside relative errors."""

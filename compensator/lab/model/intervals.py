@@ -13,6 +13,9 @@ from compensator.lab.model.validation import independent_units
 from compensator.lab.recordings.recording import FloatArray
 
 CONFIDENCE = 0.95
+INERTIA = "inertia"
+NOISE = "the acceleration is hardly more than noise of the position: these trials do not tell it"
+LEAST_ACCELERATION = 1.0  # over noise of the position, by power: less is what the noise has by chance
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,12 +44,13 @@ def estimates(fit: Fit) -> list[ParameterEstimate]:
     unit = fit.dataset.effort_definition.unit
     found, index = [], 0
     for term in fit.terms:
+        noise = term.effect.name == INERTIA and acceleration_over_noise(fit) < LEAST_ACCELERATION
         for position, parameter in enumerate(term.effect.parameters):
             if not excited[index]:
                 index += 1
                 continue  # a term for loads, say, where none is hung
             value = float(term.coefficients[position])
-            kept, bound = bool(term.kept[position]), bool(term.at_bound[position])
+            kept, bound = bool(term.kept[position]) and not noise, bool(term.at_bound[position])
             width, lowest, highest = half[index], float(fit.bounds.low[index]), float(fit.bounds.high[index])
             found.append(
                 ParameterEstimate(
@@ -56,7 +60,7 @@ def estimates(fit: Fit) -> list[ParameterEstimate]:
                     value=value if kept else float("nan"),
                     low=max(value - width, lowest) if kept else float("nan"),
                     high=min(value + width, highest) if kept else float("nan"),
-                    note=_note(kept, bound),
+                    note=NOISE if noise else _note(kept, bound),
                 )
             )
             index += 1
@@ -65,6 +69,21 @@ def estimates(fit: Fit) -> list[ParameterEstimate]:
             shown = one.unit_in(unit, fit.dataset.facts.position_unit)
             found.append(ParameterEstimate(term.effect.name, one.name, shown, number, float("nan"), float("nan"), ""))
     return found
+
+
+def acceleration_over_noise(fit: Fit) -> float:
+    """Power of the acceleration in the rows of a model with inertia, over that of noise of the position in it.
+
+    Noise of density S [position^2/Hz] is one of acceleration of S (2 pi f)^4, up to the cut-off.
+    """
+    dataset, place = fit.dataset, 0
+    for term in fit.terms:
+        if term.effect.name == INERTIA:
+            break
+        place += len(term.coefficients)
+    densities = np.array([trial.signals.position_noise for trial in dataset.trials])
+    noise = densities[dataset.trial_index[fit.training]] * (2.0 * np.pi) ** 4 * dataset.cutoff_hz**5 / 5.0
+    return float(np.sum(fit.columns[fit.training, place] ** 2) / max(float(np.sum(noise)), np.finfo(float).tiny))
 
 
 def _note(kept: bool, bound: bool) -> str:

@@ -19,6 +19,8 @@ FEW, MOST_BETWEEN = 0.02, 0.1  # shares of the samples at either end, at least, 
 NARROW = 0.05  # of the largest value: standard deviation at either end
 TOLD = 0.8  # squared correlation from which one channel tells another's scale
 FACTOR = 3.0  # between two channels of one quantity: more is another unit
+AGREE = 1.5  # between a speed and its position's own rate: a late or filtered speed differs by less, or is not TOLD
+COARSE = 3.0  # steps of a speed, root mean square: one that is rounded to fewer may differ by more
 POOR_SERVO = 1.0 / 20.0  # of its set point: a weak servo under load follows by little
 BLOCK = 20  # samples over which speed is averaged
 FEWEST_BLOCKS = 10
@@ -145,26 +147,35 @@ def _scale(recording: Recording, unit: str) -> str:
     if speed is not None and len(time_s) > FEWEST_BLOCKS:
         # the mean speed of a block is what position gains in it
         means = speed[: (len(time_s) - 1) * BLOCK].reshape(-1, BLOCK).mean(axis=1)
-        pairs.append((f"velocity_{unit}_s", np.diff(position[::BLOCK]) / np.diff(time_s), means, 1.0 / FACTOR))
+        most = FACTOR if _is_coarse(speed) else AGREE
+        pairs.append((f"velocity_{unit}_s", np.diff(position[::BLOCK]) / np.diff(time_s), means, 1.0 / most, most))
     if target is not None:
-        pairs.append((f"target_{unit}", position, target, POOR_SERVO))
-    for name, own, other, least in pairs:
+        pairs.append((f"target_{unit}", position, target, POOR_SERVO, FACTOR))
+    for name, own, other, least, most in pairs:
         factor = _factor(own, other)
-        if factor is not None and not least < factor < FACTOR:
-            return f"position_{unit} and {name} {_unlike(factor, f'position_{unit}', name)}"
+        if factor is not None and not least < factor < most:
+            return f"position_{unit} and {name} {_unlike(factor, least, most, f'position_{unit}', name)}"
     return ""
 
 
-def _unlike(factor: float, own: str, other: str) -> str:
-    if abs(abs(factor) - 1.0) < 0.5:
+def _is_coarse(speed: FloatArray) -> bool:
+    """Whether a speed is hardly more than the steps that it is rounded to."""
+    speed = speed[np.isfinite(speed)]
+    steps = np.abs(np.diff(speed))
+    steps = steps[steps > CONSTANT * np.abs(speed).max(initial=0.0)]
+    return len(steps) > 0 and float(np.sqrt(np.mean(speed**2))) < COARSE * float(steps.min())
+
+
+def _unlike(factor: float, least: float, most: float, own: str, other: str) -> str:
+    if abs(factor + 1.0) < 0.5:
         return (
             "have opposite signs; turn the sign of one of them, so that they agree with the effort's, and import again"
         )
     hint = " (degrees?)" if abs(np.log(abs(factor) / DEGREES)) < 0.1 else ""
     return (
-        f"differ by a factor of {factor:.3g}{hint}; give the one that is wrong its scale in the mapping (scale = "
-        f"{factor:.3g} for {other}, {1.0 / factor:.3g} for {own}), or leave it out: import --guess with --take "
-        "'NAME=ignore', the name of its column"
+        f"differ by a factor of {factor:.3g}{hint}, allowed is {least:.3g} .. {most:.3g}; give the one that is wrong "
+        f"its scale in the mapping (scale = {factor:.3g} for {other}, {1.0 / factor:.3g} for {own}), or leave it out: "
+        "import --guess with --take 'NAME=ignore', the name of its column"
     )
 
 

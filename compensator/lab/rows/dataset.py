@@ -448,16 +448,8 @@ class Dataset:
 
     def check_applicable(self, effect: Effect) -> None:
         """Raise NotApplicableError, in words, where the recordings lack what the effect needs."""
-        quantity = self.effort_definition.quantity
-        if effect.efforts and quantity not in effect.efforts:
-            raise NotApplicableError(
-                f"{effect.name} does not show in {self.effort_definition.title}; it does in {', '.join(effect.efforts)}"
-            )
-        if effect.by_position and self.turns_on:
-            raise NotApplicableError(
-                f"{effect.name} goes by the position, and the shaft turns on for "
-                f"{self.scales.position_span / (2.0 * np.pi):.0f} turns; record motion that comes back"
-            )
+        if why := self._never_shows(effect):
+            raise NotApplicableError(f"{effect.name} {why}")
         for fact in effect.facts:
             if not getattr(self.facts, fact):
                 raise NotApplicableError(f"{effect.name} {UNTOLD.get(fact, UNTOLD_FACT.format(fact))}")
@@ -470,6 +462,23 @@ class Dataset:
         if effect.offered_by and effect.name not in self._tried_out:
             effect.try_out([trial.motion for trial in self.trials])
             self._tried_out.add(effect.name)
+
+    def _never_shows(self, effect: Effect) -> str:
+        """Why trials of this joint and effort cannot show an effect, whatever they hold; empty where they could."""
+        effort = self.effort_definition
+        if effect.efforts and effort.quantity not in effect.efforts:
+            return f"does not show in {effort.title}; it does in {', '.join(effect.efforts)}"
+        if "supply_is_nominal" in effect.facts and effort.channels == ("voltage_v",):
+            return "is held by voltage_v, which is measured at the motor's terminals"
+        if effect.by_angle and self.facts.joint == "linear":
+            return (
+                "goes by the angle of an arm, and this joint is linear: what it lifts weighs the same everywhere; add "
+                'offset, which does, or, if the joint turns, put joint = "rotary" into rig.toml'
+            )
+        if effect.by_position and self.turns_on:
+            turns = self.scales.position_span / (2.0 * np.pi)
+            return f"goes by the position, and the shaft turns on for {turns:.0f} turns; record motion that comes back"
+        return ""
 
     def _lacking(self, effect: Effect) -> str:
         """Why what an effect varies with does not differ, and what to do."""

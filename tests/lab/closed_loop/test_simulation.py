@@ -121,3 +121,12 @@ def test_a_model_that_corrects_the_position_moves_each_of_several_trials():
     corrected = replace(fit, dataset=replace(fit.dataset, uncorrected=fit.dataset))
     trial = fit.dataset.trials[1]
     np.testing.assert_allclose(simulate(corrected, trial).position, simulate(fit, trial).position)
+
+
+def test_a_joint_that_runs_away_ends_without_a_warning(fit):
+    """Trials that hardly accelerate leave an inertia of next to nothing, and a friction that may be negative."""
+    light = with_truth(fit, replace(JOINT, inertia=1e-6, viscous=-1.0))
+    found = simulate(light, fit.dataset.trials[0], ControlLaw(0.0, 0.0, 0.0, "bench", 0.0))
+    assert not found.settled
+    assert np.isfinite(found.effort).all()
+    assert np.abs(found.position).max() <= 1e6

@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from compensator.lab.comparison.null_space import left_open
-from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.effects.catalogue import default_effects, effect_named
 from compensator.lab.model.fit import fit_model
+from compensator.lab.model.intervals import estimates
+from compensator.lab.recordings.facts import Facts
 from compensator.lab.recordings.recording import Recording
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
-from tests.lab.synthetic import FACTS, Bench, Joint, Plan, plans, recordings
+from tests.lab.synthetic import FACTS, Bench, Joint, Plan, Truth, noise_of, plans, recordings
 
 DEFAULT = default_effects(FACTS)
 
@@ -76,6 +78,33 @@ def said(made: list[Recording]) -> list[str]:
     return [one for one in left_open(fit) if "in combination only" in one]
 
 
+@pytest.mark.parametrize(("swing_rad", "is_told"), [(0.0, False), (3e-4, False), (0.03, True)])
+def test_an_inertia_of_encoder_noise_is_not_told(swing_rad, is_told):
+    """Constant speeds, forward and backward; swinging meanwhile by less, and by far more, than the encoder's noise."""
+    random = np.random.default_rng(6)
+    made = [at_constant_speed(speed, swing_rad, random) for speed in (0.1, -0.1, 0.3, -0.3, 0.8, -0.8)]
+    fit = fit_model(make_dataset(made, FACTS, Processing(4.0)), DEFAULT)
+    (inertia,) = [one for one in estimates(fit) if one.parameter == "inertia"]
+    sentences = [one for one in left_open(fit) if one.startswith("Inertia is not told by these trials: ")]
+    if is_told:
+        assert inertia.low < 0.02 < inertia.high
+        assert not sentences
+    else:
+        assert np.isnan([inertia.value, inertia.low, inertia.high]).all()
+        assert inertia.note == "the acceleration is hardly more than noise of the position: these trials do not tell it"
+        assert sentences[0].endswith("; what settles it: " + effect_named("inertia").excited_by)
+
+
+def at_constant_speed(rad_s: float, swing_rad: float, random: np.random.Generator) -> Recording:
+    time_s, w = np.arange(0.0, 12.0, 1.0 / 200.0), 2.0 * np.pi * 0.7
+    swing = swing_rad * np.sin(w * time_s)
+    q, v, a = rad_s * time_s + swing, rad_s + swing_rad * w * np.cos(w * time_s), -(w**2) * swing
+    truth = Truth(time_s, q, v, a, 0.0, 0.3, 25.0 + 0.0 * time_s)
+    torque = Joint().effort(truth) + noise_of(Bench(), len(time_s), random)
+    channels = {"time_s": time_s, "position_rad": q + 3e-4 * random.standard_normal(len(q)), "torque_n_m": torque}
+    return Recording(f"speed-{rad_s:g}", "speed", {"load_kg": 0.0, "arm_m": 0.3}, channels)
+
+
 def test_a_voltage_holds_more_than_torque(several, one_load):
     volts = {"duty": lambda torque: torque / 12.0, "supply_v": lambda torque: np.full(len(torque), 24.0)}
     with_loads = told(with_channel(several, **volts))
@@ -99,3 +128,23 @@ def test_a_current_without_torque_constant_needs_known_loads(several, one_load):
     assert "The rig tells no torque constant" in told(with_channel(one_load, **current))[-1]
     known = replace(FACTS, torque_per_current_n_m_a=0.5)
     assert not any("torque constant" in one for one in told(with_channel(one_load, **current), facts=known))
+
+
+def linear(one: Recording, **channels: np.ndarray) -> Recording:
+    """The same motion in m."""
+    kept = {"time_s": one.channels["time_s"], "position_m": one.channels["position_rad"]}
+    return replace(one, channels=kept | channels)
+
+
+def test_a_linear_joint_is_told_of_in_its_own_words():
+    facts = Facts(joint="linear")
+    made = recordings(Joint(arm_moment=0.0), None, plans(loads_kg=(0.0, 0.2)), seed=4)
+    by_current = [linear(one, current_a=one.channels["torque_n_m"]) for one in made]
+    (sentence,) = [one for one in told(by_current, default_effects(facts), facts) if "in A" in one]
+    assert "force constant and friction are known as their ratio only. Record the force (force_n)" in sentence
+    by_voltage = [linear(one, voltage_v=one.channels["torque_n_m"]) for one in made]
+    fit = fit_model(make_dataset(by_voltage, facts, Processing(8.0)), default_effects(facts))
+    assert left_open(fit)[-1].startswith("The effort is the terminal voltage, which holds ")
+    assert "force constant and winding resistance" in left_open(fit)[-1]
+    units = {one.parameter: one.unit for one in estimates(fit)}
+    assert units["load inertia scale"] == "V s2/(m kg)"

@@ -173,6 +173,16 @@ def test_an_effect_that_the_trials_cannot_show_says_why(effect, temperature_c, w
         fit_model(dataset, ["viscous", effect])
 
 
+@pytest.mark.parametrize("effect", ["gravity", "centre_of_mass_angle"])
+def test_what_goes_by_an_angle_is_refused_to_a_linear_joint(effect):
+    facts = Facts(joint="linear")
+    (one,) = recordings(trials=plans(loads_kg=(0.1,))[:1])
+    channels = {"position_m": one.channels["position_rad"], "force_n": one.channels["torque_n_m"]}
+    dataset = make_dataset([replace(one, channels=one.channels | channels)], facts, Processing(5.6))
+    with pytest.raises(NotApplicableError, match=f"{effect} goes by the angle of an arm, and this joint is linear"):
+        fit_model(dataset, [*default_effects(facts), effect])
+
+
 def test_a_load_that_nobody_told_is_not_said_to_be_the_same():
     untold = [
         replace(one, conditions={key: value for key, value in one.conditions.items() if key != "load_kg"})

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from compensator.lab.diagnosis.diagnose import diagnose
-from compensator.lab.effects.catalogue import default_effects
+from compensator.lab.effects.catalogue import default_effects, effect_named
+from compensator.lab.errors import NotApplicableError
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.prediction import with_own_prediction
 from compensator.lab.recordings.recording import Recording
@@ -76,6 +77,15 @@ def test_where_the_supply_is_measured_it_cannot_be_missing(trials, told, step_v)
     dataset = make_dataset([read(sagging(one, SOURCE_OHM), step_v) for one in trials], facts, Processing())
     found = diagnose(fit_model(dataset, default_effects(facts)))
     assert "cannot hide behind a supply voltage that is measured" in found.left_out["supply_sag"]
+
+
+def test_a_voltage_at_the_terminals_holds_the_sag(trials):
+    """Nobody is asked for a supply, whatever the rig tells of one."""
+    for told in (None, True):
+        made = [replace(one, channels=one.channels | {"voltage_v": one.channels["torque_n_m"]}) for one in trials]
+        facts = replace(FACTS, supply_is_nominal=told, effort="terminal_voltage")
+        with pytest.raises(NotApplicableError, match="supply_sag is held by voltage_v, which is measured"):
+            make_dataset(made, facts, Processing()).check_applicable(effect_named("supply_sag"))
 
 
 def test_a_stiff_supply_is_no_finding(trials):

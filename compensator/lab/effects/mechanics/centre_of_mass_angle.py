@@ -29,5 +29,6 @@ EFFECT = Effect(
     source="statics",
     confused_with=("offset", "viscous_asymmetry"),
     carried=True,
+    by_angle=True,
     breakaway=at_rest(columns, PARAMETERS, "position"),
 )

@@ -32,5 +32,6 @@ EFFECT = Effect(
     source="Saini et al. 2013, section 3.2.2; statics",
     confused_with=("spring", "centre_of_mass_angle"),
     carried=True,
+    by_angle=True,
     breakaway=at_rest(columns, PARAMETERS, "position"),
 )

@@ -23,7 +23,7 @@ EFFECT = Effect(
     columns=columns,
     parameters=(
         Parameter("inertia", "{effort} s2/{position}", 0.0),
-        Parameter("load inertia scale", "{effort} s2/({position} kg m2)", 0.0),
+        Parameter("load inertia scale", "{effort} s2/({position} {inertia})", 0.0),
     ),
     driver="acceleration",
     excited_by="accelerations that differ at the same speed and position: sines of several frequencies, steps",
