@@ -272,7 +272,8 @@ def test_the_last_effect_cannot_be_dropped(store, experiment_id):
 
 
 def test_an_unknown_effect_names_its_driver(store):
-    bump = Joint(extra=lambda x: 0.06 * np.exp(-(((x.q - 0.4) / 0.08) ** 2)) * np.sign(x.v))
+    # a quarter of dry friction: one as large as that is most of what the noise is learnt from, and hides its own way
+    bump = Joint(extra=lambda x: 0.02 * np.exp(-(((x.q - 0.4) / 0.08) ** 2)) * np.sign(x.v))
     study = create_study(store, "joint", [imported(store, plans(), bump)])
     found = diagnose(store, study.study_id)
     assert found.verdict == "unknown-effect"

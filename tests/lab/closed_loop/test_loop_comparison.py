@@ -88,7 +88,7 @@ def test_effects_of_the_measuring_chain_move_nothing(fit):
 
 def test_refinement_comes_back_to_the_truth():
     """What an encoder's counts hide from columns along the measured motion, those along the simulated one have."""
-    rough = fit_model(make_dataset(recordings(Joint(count_rad=0.002), 5), FACTS, Processing(cutoff_hz=20.0)), MODEL)
+    rough = fit_model(make_dataset(recordings(Joint(count_rad=0.005), 5), FACTS, Processing(cutoff_hz=20.0)), MODEL)
     refined = refine(rough)
     assert refined.fit is not None
     truth = np.array([0.05, 0.0, 0.6, 0.0, 0.2, 0.1])
