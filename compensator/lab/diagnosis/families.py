@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from compensator.lab.diagnosis.answer import EXAMINED, Answer
 from compensator.lab.diagnosis.confirmation import helps_unproved, is_confirmed
 from compensator.lab.diagnosis.diagnosis import Candidate
-from compensator.lab.diagnosis.examination import FORMULA_SHARE, best_shapes, examine
+from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL, FORMULA_SHARE, best_shapes, examine
 from compensator.lab.diagnosis.remaining import what_remains, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
 from compensator.lab.diagnosis.wording import (
@@ -18,6 +18,7 @@ from compensator.lab.diagnosis.wording import (
 from compensator.lab.model.fitted import Fit
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import Evidence, Screening, among_all, kept_evidence
+from compensator.lab.screening.extrapolation import kept_without_noise
 
 FEWEST_SHOWN = 2
 
@@ -83,8 +84,8 @@ class _Family:
         if not is_confirmed(candidate):
             return ""
         assert candidate.explained is not None
-        if shadow_of := self._shadow_of(candidate):
-            return shadow_of
+        if why := self._shadow_of(candidate) or self._by_noise(candidate):
+            return why
         others = [one for one in self.examined if one is not candidate]
         notes = what_remains(candidate.explained, self.gathered, candidate.effect.name)
         sentence, p_value = missing_in_words(candidate), candidate.p_value
@@ -105,6 +106,16 @@ class _Family:
         if not most or candidate.evidence.noncentrality >= FORMULA_SHARE * others[most]:
             return ""
         return f"explains little beside {most}, which cannot be it"
+
+    def _by_noise(self, candidate: Candidate) -> str:
+        """That noise of the position makes most of what smooths an effort; empty where it does not."""
+        assert candidate.evidence is not None
+        if candidate.effect.driver != "effort_rate":
+            return ""
+        kept = kept_without_noise(self.gathered, candidate.evidence)
+        if kept >= EXPLAINED_BY_RIVAL:
+            return ""
+        return f"is what noise of the position makes: without it {kept:.0%} of the evidence is left"
 
     def _beside_chain(self, item: Evidence) -> float:
         """Noncentrality of an effect beside all that the measuring chain, and every contact, makes."""

@@ -39,8 +39,10 @@ def position_noise(position: FloatArray, mixed: float, rate_hz: float) -> float:
     return float(np.mean(density[above] / _passed(at_hz[above] / rate_hz, mixed))) if above.any() else 0.0
 
 
-def without_noise(acceleration: FloatArray, position: FloatArray, mixed: float, rate_hz: float) -> FloatArray:
-    """The acceleration (n,) as it is expected of a position with noise.
+def without_noise(
+    acceleration: FloatArray, position: FloatArray, mixed: float, rate_hz: float
+) -> tuple[FloatArray, FloatArray]:
+    """The acceleration (n,) as it is expected of a position with noise, and a draw of the noise that it keeps.
 
     Args:
         acceleration: of the position after some low-pass.
@@ -50,18 +52,22 @@ def without_noise(acceleration: FloatArray, position: FloatArray, mixed: float, 
     """
     samples = max(int(WINDOW_S * rate_hz), FEWEST_SAMPLES)
     if len(position) < samples:
-        return acceleration
-    windows = ShortTimeFFT(hann(samples, sym=False), samples // STEPS, rate_hz)
+        return acceleration, np.zeros(len(acceleration))
+    window = hann(samples, sym=False)
+    windows = ShortTimeFFT(window, samples // STEPS, rate_hz)
     # of second differences: large slow motion would leak from the window's low frequencies into all others
     measured = windows.spectrogram(np.diff(position, 2, prepend=position[0], append=position[-1]))
     per_sample = windows.f / rate_hz
     white = (2.0 * np.sin(np.pi * per_sample)) ** 4 * _passed(per_sample, mixed)
     above = per_sample > 0.5 * NOISE_ONLY
-    noise = np.mean(measured[above] / white[above, None], axis=0) * white[:, None]
+    power = np.mean(measured[above] / white[above, None], axis=0)
     density = uniform_filter(measured, NEIGHBOURS)
-    gain = np.clip(1.0 - noise / np.maximum(density, np.finfo(float).tiny), 0.0, 1.0)
+    gain = np.clip(1.0 - power * white[:, None] / np.maximum(density, np.finfo(float).tiny), 0.0, 1.0)
     found: FloatArray = windows.istft(gain * windows.stft(acceleration), k1=len(acceleration))
-    return found
+    drawn = np.random.default_rng(len(position)).standard_normal(len(position) + 2)
+    scale = rate_hz**2 * np.sqrt(power / float(window @ window))
+    noise: FloatArray = windows.istft(gain * scale * windows.stft(np.diff(drawn, 2)), k1=len(acceleration))
+    return found, noise
 
 
 def mixed_by_interpolation(even: FloatArray, time_s: FloatArray) -> float:

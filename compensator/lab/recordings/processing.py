@@ -35,6 +35,7 @@ class Signals:
         rate_hz: of the grid.
         position, velocity, acceleration, jerk: differentiated after the wide filter.
         position_noise: its density before, in its unit squared per Hz.
+        acceleration_noise: a draw of what noise of the position leaves in the acceleration.
         effort: raw, on the grid.
         temperature_c, supply_v, load: NaN where not measured; load: of a torque sensor [N m].
         usable: False in gaps, with the power stage off, in saturation, and at the ends.
@@ -48,6 +49,7 @@ class Signals:
     acceleration: FloatArray
     jerk: FloatArray
     position_noise: float
+    acceleration_noise: FloatArray
     effort: FloatArray
     temperature_c: FloatArray
     supply_v: FloatArray
@@ -114,7 +116,7 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
     position = low_pass(even_position, DIFFERENTIATION_FACTOR * cutoff_hz, rate)
     velocity = rate_of_change(position, rate)
     mixed = mixed_by_interpolation(time, raw_time[np.isfinite(raw_position)])
-    acceleration = without_noise(rate_of_change(velocity, rate), even_position, mixed, rate)
+    acceleration, noise = without_noise(rate_of_change(velocity, rate), even_position, mixed, rate)
     raw_effort = effort.of(recording)
     return Signals(
         recording=recording,
@@ -125,6 +127,7 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
         acceleration=acceleration,
         jerk=rate_of_change(acceleration, rate),
         position_noise=position_noise(even_position, mixed, rate),
+        acceleration_noise=low_pass(noise, DIFFERENTIATION_FACTOR * cutoff_hz, rate),
         effort=_resample(time, raw_time, raw_effort),
         temperature_c=_optional(recording, "temperature_c", time),
         supply_v=_optional(recording, "supply_v", time),

@@ -6,6 +6,7 @@ import pytest
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
 from compensator.lab.recordings.effort import choose_effort
+from compensator.lab.recordings.low_pass import low_pass
 from compensator.lab.recordings.position_noise import without_noise
 from compensator.lab.recordings.processing import make_signals
 from compensator.lab.rows.assembly import make_dataset
@@ -87,9 +88,12 @@ def test_an_acceleration_keeps_its_motion_and_loses_noise_where_there_is_only_no
     position = np.where(time_s < 6.0, np.sin(2.0 * np.pi * 3.0 * time_s), 2.0 * (time_s - 6.0))
     noisy = position + 1e-4 * np.random.default_rng(3).standard_normal(len(time_s))
     exact, measured = accelerated(position), accelerated(noisy)
-    found = without_noise(measured, noisy, 0.0, RATE_HZ)
+    found, drawn = without_noise(measured, noisy, 0.0, RATE_HZ)
     assert rms(found[steady] - exact[steady]) < 0.4 * rms(measured[steady] - exact[steady])
     assert rms(found[quick] - exact[quick]) < 0.45 * rms(measured[quick] - exact[quick])
+    # where the motion is, at 3 Hz, what is left of the noise has the size of what was drawn
+    left, again = (low_pass(one, 5.0, RATE_HZ) for one in (found - exact, drawn))
+    assert rms(again[quick]) == pytest.approx(rms(left[quick]), rel=0.4)
     assert found[quick] @ exact[quick] / (exact[quick] @ exact[quick]) == pytest.approx(1.0, abs=1e-3)
 
 
@@ -98,7 +102,9 @@ def test_an_acceleration_without_noise_stays_as_it_is():
     position = np.sin(2.0 * np.pi * 1.5 * time_s) + 0.3 * np.sin(2.0 * np.pi * 4.0 * time_s)
     exact = accelerated(position)
     inside = slice(20, -20)
-    assert without_noise(exact, position, 0.0, RATE_HZ)[inside] == pytest.approx(exact[inside], abs=1e-3 * rms(exact))
+    assert without_noise(exact, position, 0.0, RATE_HZ)[0][inside] == pytest.approx(
+        exact[inside], abs=1e-3 * rms(exact)
+    )
 
 
 def rms(values):
