@@ -92,5 +92,6 @@ def test_a_quiet_joint_leaves_less_than_one_that_scatters(measured: tuple[DrawnP
 def test_what_hides_next_to_nothing_has_no_r_and_more_of_it_has_more(measured: tuple[DrawnPlant, Scale]) -> None:
     drawn, scale = measured
     # encoder and cut-off let what is left differ by some percent between recordings that hide nothing
-    assert scale.ratio(draw_item(HOSE, 0, 1e-4)) < MODERATE[0] / 2.0
+    next_to_nothing = [scale.ratio(draw_item(HOSE, 0, size)) for size in (1e-5, 1e-4, 2e-4, 1e-3)]
+    assert np.median(next_to_nothing) < MODERATE[0] / 2.0
     assert scale.ratio(draw_item(HOSE, 0, 0.5)) < scale.ratio(drawn)

@@ -109,7 +109,7 @@ def test_weights_go_over_residual_and_effort(both):
 
 def test_where_teeth_that_fly_may_turn_the_sign_rows_count_less():
     """The far side of known free play is not where a rigid gear has it, nor is the sign of the current."""
-    made = [estimated(one) for one in recordings(Joint(extra=loose_teeth), Bench(noise=0.003), plans()[:6], seed=3)]
+    made = [estimated(one) for one in recordings(Joint(extra=loose_teeth), Bench(noise=0.003), plans(), seed=3)]
     told = replace(FACTS, arm_inertia_kg_m2=ARM_KG_M2, arm_moment_n_m=Joint().arm_moment, backlash_rad=GAP_RAD)
     fit = fit_model(make_dataset(made, told, Processing(rows="moving")), [*DEFAULT, "dead_time"])
     motions = [trial.motion for trial in fit.dataset.trials]
