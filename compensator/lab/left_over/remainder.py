@@ -12,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.signal import sosfreqz
 
+from compensator.lab.left_over.lines import TINY
 from compensator.lab.model.weights import bounded_influence
 from compensator.lab.recordings.low_pass import filter_sections
 from compensator.lab.recordings.recording import BoolArray, FloatArray
@@ -21,7 +22,6 @@ BANDS = (0.0, 0.25, 0.5, 0.9)  # of the cut-off: the motion's, a gap, and the no
 NARROW = 0.1  # of the cut-off: a band for a resonance, each half of it beyond the one before
 DENSER = 2.0  # in the motion's band than above: what coloured noise does not reach
 SURE = 3.0  # standard deviations of that ratio's logarithm
-TINY = float(np.finfo(float).tiny)
 LEAST_SHARE = 0.01  # of the effort: by so much friction differs from one stroke to the next without any cause
 
 

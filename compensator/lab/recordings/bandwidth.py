@@ -25,6 +25,7 @@ from compensator.lab.recordings.plain_columns import (
     long_enough,
     stacked,
 )
+from compensator.lab.recordings.position_noise import SEGMENT_S
 from compensator.lab.recordings.processing import lowest_cutoff_hz, make_signals, sample_rate_hz
 from compensator.lab.recordings.recording import Recording
 
@@ -33,7 +34,6 @@ LEAST_COHERENCE = 0.1  # less is no motion's
 LOWEST_HZ = 2.0
 HIGHEST_SHARE = 0.2  # of the sample rate: three times that, for the position, is beyond Nyquist already
 MOTION_SHARE = 0.99
-SEGMENT_S = 4.0
 SURELY = 3.0  # times the noise: a spectral estimate from so few segments scatters so far once in a hundred (Welch 1967)
 HARMONICS = 4.0
 MOST_NOISE = 0.01  # of the effort, as a good current sensor; the corner grows with its power of 0.4
