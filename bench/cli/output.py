@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -121,6 +122,12 @@ def refuse_taken(path: Path, mend: str = "name another file") -> None:
     """
     if path.exists():
         raise FileError(f"{path}: is there already; {mend}, or remove it")
+
+
+def free_page(stem: str) -> Path:
+    """A place for a report: the first of STEM.html, STEM-2.html, STEM-3.html, .. that is free."""
+    places = (Path(f"{stem}{'' if number == 1 else f'-{number}'}.html") for number in count(1))
+    return next(place for place in places if not place.exists())
 
 
 def write_whole(path: Path, chunks: Iterable[bytes]) -> None:

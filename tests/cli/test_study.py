@@ -46,6 +46,7 @@ def test_from_trials_to_an_error_that_falls(command, tmp_path, monkeypatch):
     report = command("study", "report", study, "--html", "study.html", "--no-suggest")
     assert report.exit_code == 0, report.output
     assert "What the models leave" in (tmp_path / "study.html").read_text(encoding="utf-8")
+    assert "written: study-1.html" in command("study", "report", study, "--no-suggest").stdout
     with monkeypatch.context() as patch:
         patch.setattr(report_module, "report_html", pytest.fail)  # a place that is taken is refused before the work
         again = command("study", "report", study, "--html", "study.html", "--no-suggest")
@@ -174,7 +175,7 @@ def test_each_step_of_a_study_names_the_next(command, tmp_path):
     assert command("study", "add", 1, "viscous_asymmetry").exit_code == 0
     again = command("study", "diagnose", 1, "--model", 1).stdout.splitlines()
     assert again[-1] == "next: friction-bench study add 1 viscous_asymmetry --model 1"
-    keep = "next: friction-bench study report 1 --html study-1.html"
+    keep = "next: friction-bench study report 1"
     assert command("study", "diagnose", 1).stdout.splitlines()[-1] == keep
     searched = command("study", "search", 1, "--model", 1).stdout.splitlines()
     assert searched[-1] == keep
@@ -207,8 +208,8 @@ def test_a_search_that_ends_at_a_curve_offers_it_as_its_diagnosis_does(command, 
     ("verdict", "code", "slight", "command"),
     [
         ("data-problem", "data-problem", False, "study new NAME --experiment NUMBER --leave-out TRIAL"),
-        ("nothing", "nothing", False, "study report 3 --html study-3.html"),
-        ("missing", "missing", True, "study report 3 --html study-3.html"),
+        ("nothing", "nothing", False, "study report 3"),
+        ("missing", "missing", True, "study report 3"),
         ("nothing", "too-short", False, "study suggest 3"),
         ("nothing", "unexplained", False, "study suggest 3"),
     ],

@@ -94,7 +94,7 @@ def next_step(found: "Diagnosis", model_id: int | None) -> str:
     if found.verdict == "data-problem":
         return "next: friction-bench study new NAME --experiment NUMBER --leave-out TRIAL"
     if found.slight or found.joint == "nowhere" or found.conclusion.code in ("nothing", "not-confirmed"):
-        return f"next: friction-bench study report {found.study_id} --html study-{found.study_id}.html"
+        return f"next: friction-bench study report {found.study_id}"
     return f"next: {_more(found)}"
 
 

@@ -1,14 +1,13 @@
 """`friction-bench explain FILE...`: from files of any bench to a report that says what the model lacks."""
 
 import re
-from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from bench.cli.bench_session import session_of
-from bench.cli.output import Json, console, percent, print_json, refuse_taken, say, table, write_whole
+from bench.cli.output import Json, console, free_page, percent, print_json, refuse_taken, say, table, write_whole
 from bench.cli.records.guessed import CountsPerTurn, RateHz, SupplyV, Take, known_of, remark_imported_before, show
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
@@ -52,7 +51,7 @@ def explain(
     known = known_of(take, counts_per_turn, rate_hz, supply_v)
     recordings, guess = read_unknown(path, chosen_rig, known, None if mapping is None else read_mapping(mapping))
     called = name or recordings.name
-    report = html or _free(f"explain-{re.sub(r'[^A-Za-z0-9._-]+', '-', called)}")
+    report = html or free_page(f"explain-{re.sub(r'[^A-Za-z0-9._-]+', '-', called)}")
     refuse_taken(report, "name another file with --html")
     if guess is not None and not as_json:
         show(guess, recordings.notes)
@@ -99,12 +98,6 @@ def explain(
     if count := len(found.not_judged):
         say(f"{count} {'effect was' if count == 1 else 'effects were'} not judged: see the report.")
     say(f"written: {report}; kept as study {found.study_id}")
-
-
-def _free(stem: str) -> Path:
-    """A place for a report: the first of STEM.html, STEM-2.html, STEM-3.html, .. that is free."""
-    places = (Path(f"{stem}{'' if number == 1 else f'-{number}'}.html") for number in count(1))
-    return next(place for place in places if not place.exists())
 
 
 def _say_what_holds(sentence: str, report: Path, experiment_id: int, as_json: bool) -> None:

@@ -11,7 +11,7 @@ from bench.cli.bench_session import session_of
 from bench.cli.evaluation.cores import Cluster, Workers, progress
 from bench.cli.lab import diagnosis_tables, study_tables
 from bench.cli.operation.service import DEFAULT_URL, Url
-from bench.cli.output import Json, print_json, refuse_taken, say, table, write_whole
+from bench.cli.output import Json, free_page, print_json, refuse_taken, say, table, write_whole
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.store import Store
@@ -37,6 +37,7 @@ _START = (
 )
 _AT_ONCE = "Trials of a round, with --start."
 _QUEUE = "Put them into the queue of the service that runs, on the same store; then `study extend` adds what completed."
+_REPORT = "File to write; without it study-N.html, or study-N-2.html and so on where that is there."
 _BENCH = "Move the joint once with each model not tried yet: the error of the reflected load, in grams."
 _MOTION = "Simulate each model not simulated yet in closed loop: the error of the motion."
 _REFINE = "Refine the coefficients by it, too: the effort regressed along the simulated motion; nothing is kept."
@@ -306,18 +307,19 @@ def use_command(context: typer.Context, study: StudyId, model: Model = None, as_
 def report_command(
     context: typer.Context,
     study: StudyId,
-    html: Annotated[Path, typer.Option(help="File to write.")],
+    html: Annotated[Path | None, typer.Option(help=_REPORT)] = None,
     suggest: Annotated[bool, typer.Option(help="Say which trials to record next; takes longer.")] = True,
 ) -> None:
     """One HTML file to be filed: trials, ladder, model, pictures, diagnosis, what to record next, provenance."""
     from bench.study.report.report import report_html
 
-    refuse_taken(html)  # before the time that a report takes
+    report = html or free_page(f"study-{study}")
+    refuse_taken(report)  # before the time that a report takes
     session = session_of(context)
     with session.open_store() as store:
         page = report_html(store, study, session.configuration() if suggest else None)
-    write_whole(html, [page.encode()])
-    say(f"written: {html}")
+    write_whole(report, [page.encode()])
+    say(f"written: {report}")
 
 
 @app.command("ladder")

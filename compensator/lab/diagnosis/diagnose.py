@@ -69,7 +69,7 @@ def diagnose(fit: Fit) -> Diagnosis:
     # what sliding leaves no room for, rest may: static friction beyond the model's is something that is missing
     sticks = first.verdict == "nothing" and rest is not None and rest.is_friction
     ranked = _once([candidate for answer in (first, *others) for candidate in answer.candidates])
-    hiding = absorbed(fit, families.left_out)
+    hiding = absorbed(first.explained or fit, families.left_out)
     notes = [*first.notes, *left, *(_also_missing(answer) for answer in others if answer.verdict == "missing")]
     notes += [note for answer in others if answer is families.rest for note in answer.notes]
     return Diagnosis(

@@ -30,7 +30,7 @@ class Resonance:
     """A band in which the residual is denser than below and above.
 
     Attributes:
-        frequency_hz: middle of the band.
+        frequency_hz: middle of the band, as the servo holds the joint.
         denser: its density over the larger of the lowest ones on either side.
     """
 
@@ -151,4 +151,4 @@ def ringing_in_words(resonance: Resonance) -> str:
     """Where it stands out, and where to look."""
     how = f"{resonance.denser:.2g} times as dense as below and above"
     where = "look for what swings when the motion strikes it, as a link, a belt or a load that bends"
-    return f"rings at about {resonance.frequency_hz:.2g} Hz, {how}: {where}"
+    return f"rings at about {resonance.frequency_hz:.2g} Hz in closed loop, {how}: {where}"

@@ -8,6 +8,8 @@ from compensator.lab.recordings.recording import BoolArray, FloatArray
 from compensator.lab.recordings.repeats import ALIKE, likeness, repeats
 from compensator.lab.rows.dataset import Dataset
 
+ALL = 0.995  # of what is left: told as all of it
+
 
 def share_that_recurs(dataset: Dataset, residual: FloatArray, rows: BoolArray) -> float | None:
     """Intraclass correlation of a residual over repeated trials, at equal times (Fisher 1925).
@@ -54,4 +56,6 @@ def recurring_share_in_words(share: float | None) -> str:
     """What repeats say of what is left, or that one is wanted, as a sentence."""
     if share is None:
         return "Repeat a trial: what comes again is the joint's, what does not has changed since."
+    if share > ALL:
+        return "In repeated trials all of it comes again: it is the joint's."
     return f"In repeated trials {share:.0%} of it comes again, which is the joint's; the rest has changed since."

@@ -55,8 +55,9 @@ def without_noise(
         return acceleration, np.zeros(len(acceleration))
     window = hann(samples, sym=False)
     windows = ShortTimeFFT(window, samples // STEPS, rate_hz)
-    # of second differences: large slow motion would leak from the window's low frequencies into all others
-    measured = windows.spectrogram(np.diff(position, 2, prepend=position[0], append=position[-1]))
+    # of second differences: large slow motion would leak from the window's low frequencies into all others; 0 at both
+    # ends, where a joint that moves already would seem to be struck
+    measured = windows.spectrogram(np.pad(np.diff(position, 2), 1))
     per_sample = windows.f / rate_hz
     white = (2.0 * np.sin(np.pi * per_sample)) ** 4 * _passed(per_sample, mixed)
     above = per_sample > 0.5 * NOISE_ONLY

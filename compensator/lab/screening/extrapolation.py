@@ -27,8 +27,9 @@ def kept_without_noise(gathered: Candidates, item: Evidence) -> float:
     assert gathered.noise is not None
     fit = gathered.fit
     noisier = fit_model(_noisier(fit.dataset), fit.names, fit.training, fit.shapes)
-    before, after = _pull(gathered, item), _pull(gather(noisier, gathered.show_in).whitened(gathered.noise), item)
-    return float(np.clip(2.0 - after / before, 0.0, 1.0) ** 2)
+    # of the same weights: those go by acceleration and jerk, too
+    again = gather(noisier, gathered.show_in, gathered.weights).whitened(gathered.noise)
+    return float(np.clip(2.0 - _pull(again, item) / _pull(gathered, item), 0.0, 1.0) ** 2)
 
 
 def _pull(gathered: Candidates, item: Evidence) -> float:

@@ -52,28 +52,29 @@ def hides_in_words(effect: Effect, names: Collection[str]) -> str:
     return f"{effect.name} hides in the free scale of {' and '.join(hiding)}: nothing can tell it from {rivals}"
 
 
-def gather(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
+def gather(fit: Fit, show_in: MotionRows = "sliding", weights: FloatArray | None = None) -> Candidates:
     """Collect candidates for a fitted model: training rows, weighted, on top of model and nuisance columns.
 
     Args:
         fit: of the model.
         show_in: the rows that are tested, and the effects that show in them.
+        weights: of these rows, shape (n,); None: as its residual tells.
     """
-    ground, builder = _ground(fit, show_in)
+    ground, builder = _ground(fit, show_in, weights)
     named, left_out = builder.named()
     return replace(ground, bases=builder.bases, named=named, left_out=left_out)
 
 
 def gather_curves(fit: Fit, show_in: MotionRows = "sliding") -> Candidates:
     """The same without the effects of the catalogue: what the model leaves, and free curves. Arguments as `gather`."""
-    return _ground(fit, show_in)[0]
+    return _ground(fit, show_in, None)[0]
 
 
-def _ground(fit: Fit, show_in: MotionRows) -> "tuple[Candidates, _Builder]":
+def _ground(fit: Fit, show_in: MotionRows, weights: FloatArray | None) -> "tuple[Candidates, _Builder]":
     dataset = with_own_prediction(fit.dataset, fit.terms)
     fit = replace(fit, dataset=dataset)
     rows = fit.training & dataset.in_regimes(show_in)
-    weights = weights_of(fit, rows, fit.residual[rows])
+    weights = weights_of(fit, rows, fit.residual[rows]) if weights is None else weights
     builder = _Builder(fit, show_in, rows, weights)
     curves = Curves(partial(free_curves, dataset), builder.weighted)
     return Candidates(fit, show_in, rows, weights, builder.bases, [], curves, {}), builder

@@ -40,6 +40,17 @@ def test_beside_a_name_it_is_a_note_with_its_numbers():
     assert note.text not in found.sentence
 
 
+def test_an_offset_that_the_effect_named_has_made_is_no_friction_by_direction():
+    """Damping by direction, as long as it is missing, leaves its mean in the offset."""
+    joint = Joint(offset=0.0, extra=lambda x: 0.02 * np.abs(x.v))
+    dataset = make_dataset(recordings(joint, seed=3), FACTS, Processing(cutoff_hz=8.0))
+    base = fit_model(dataset, default_effects(FACTS))
+    assert absorbed(base, ["coulomb_asymmetry"])
+    found = diagnose(base)
+    assert found.named == ("viscous_asymmetry",)
+    assert not [one for one in found.notes if one.code == "absorbed"]
+
+
 def test_without_coulomb_friction_there_is_nothing_that_the_offset_is_a_share_of():
     dataset = make_dataset(recordings(Joint(offset=0.1), seed=3), FACTS, Processing(cutoff_hz=8.0))
     fit = fit_model(dataset, [name for name in default_effects(FACTS) if name != "coulomb"])

@@ -39,4 +39,5 @@ def test_without_repeats_one_is_asked_for():
     rows = np.ones(len(alone.effort), dtype=bool)
     assert share_that_recurs(alone, residuals(alone, 1.0, 0.0), rows) is None
     assert recurring_share_in_words(None).startswith("Repeat a trial")
+    assert recurring_share_in_words(0.999) == "In repeated trials all of it comes again: it is the joint's."
     assert recurring_share_in_words(0.194).startswith("In repeated trials 19% of it comes again")
