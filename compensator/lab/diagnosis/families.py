@@ -16,6 +16,8 @@ from compensator.lab.diagnosis.wording import (
     unknown_in_words,
 )
 from compensator.lab.model.fitted import Fit
+from compensator.lab.model.gain import predicts_better
+from compensator.lab.model.validation import held_out
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 from compensator.lab.screening.evidence import Evidence, Screening, among_all, kept_evidence
 from compensator.lab.screening.extrapolation import kept_without_noise
@@ -95,15 +97,21 @@ class _Family:
     def _shadow_of(self, candidate: Candidate) -> str:
         """Beside which effect it explains little near reversals, though that cannot be it; empty where there is none.
 
-        Every joint leaves something there that many effects follow. In steady sliding the held-out error is enough.
+        Every joint leaves something there that many effects follow. In steady sliding the held-out error is enough; and
+        here, too, what predicts other trials better than that effect is not its shadow.
         """
         assert candidate.evidence is not None
+        assert candidate.explained is not None
         if self.gathered.show_in == "sliding":
             return ""
         others = {one.block.name: self._beside_chain(one) for one in self.shapes}
         others.pop(candidate.effect.name, None)
         most = max(others, key=lambda name: others[name], default="")
         if not most or candidate.evidence.noncentrality >= FORMULA_SHARE * others[most]:
+            return ""
+        larger = next((one.explained for one in self.examined if one.effect.name == most), None)
+        rows = self.gathered.show_in
+        if larger is not None and predicts_better(*(held_out(one, rows) for one in (candidate.explained, larger))):
             return ""
         return f"explains little beside {most}, which cannot be it"
 

@@ -126,16 +126,27 @@ SPRUNG = Joint(extra=lambda x: 0.05 * x.q)
 
 
 @pytest.mark.parametrize(
-    ("share", "rows", "is_shadow"), [(0.7, "moving", False), (0.4, "moving", True), (0.4, "sliding", False)]
+    ("share", "rows", "is_better", "is_shadow"),
+    [
+        (0.7, "moving", False, False),
+        (0.4, "moving", False, True),
+        (0.4, "moving", True, False),  # on other trials
+        (0.4, "sliding", False, False),
+    ],
 )
-def test_near_reversals_what_explains_much_less_is_a_shadow(monkeypatch, share, rows, is_shadow):
+def test_near_reversals_what_explains_much_less_is_a_shadow(monkeypatch, share, rows, is_better, is_shadow):
     shapes = [
         SimpleNamespace(block=Block(name, np.empty((0, 1)), 0, 1), noncentrality=evidence)
         for name, evidence in (("backlash", 100.0), ("elasticity", 100.0 * share))
     ]
-    family = families._Family(SimpleNamespace(show_in=rows), None, shapes, [])
+    most, less = (
+        SimpleNamespace(effect=effect_named(one.block.name), evidence=one, explained=one.block.name) for one in shapes
+    )
+    family = families._Family(SimpleNamespace(show_in=rows), None, shapes, [most, less])
     monkeypatch.setattr(families._Family, "_beside_chain", lambda _, one: one.noncentrality)
-    most, less = (SimpleNamespace(effect=effect_named(one.block.name), evidence=one) for one in shapes)
+    monkeypatch.setattr(families, "held_out", lambda model, rows: (model, rows))
+    better = (("elasticity", "moving"), ("backlash", "moving"))
+    monkeypatch.setattr(families, "predicts_better", lambda *two: is_better and two == better)
     assert family._shadow_of(most) == ""
     assert family._shadow_of(less) == ("explains little beside backlash, which cannot be it" if is_shadow else "")
 
