@@ -1,8 +1,8 @@
 """Which effect is missing: screen the catalogue, name the best, find its rivals, and measure the gain on held-out rows.
 
-Three questions, three statistics (docs/explanation/diagnosis.md): is anything missing (maximum over all candidates of
-a robust score, its null by sign flips of whole stretches), what is it called (likelihood less the price of parameters
-and shapes), does it help (held-out error, resampled by whole trials).
+Three questions, three statistics (docs/explanation/diagnosis.md): is anything missing (the least chance of all
+candidates, over draws of the noise that is estimated), what is it called (likelihood less the price of parameters and
+shapes), does it help (held-out error, resampled by whole trials).
 """
 
 from math import nan
