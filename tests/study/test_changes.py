@@ -45,4 +45,4 @@ def test_what_cannot_be_is_said_when_it_is_added(store, experiment_id, monkeypat
     study = create_study(store, "memory", [experiment_id], (), cutoff_hz=6.0).study_id
     monkeypatch.setattr(changes, "why_impossible", lambda *_: Impossible(why, ""))
     monkeypatch.setattr(changes, "held_out_gain", lambda *_: Gain(0.2, 0.1, 0.3))
-    assert add_effect(store, study, "backlash").sentence.endswith(end)
+    assert add_effect(store, study, "pre_sliding").sentence.endswith(end)

@@ -37,6 +37,7 @@ class Motion:
         inertia: effort per acceleration of all that moves; 0 before anything is predicted.
         load_inertia: effort per acceleration of the tip load, a part of both; 0 before anything is predicted.
         parting: acceleration at which the motor side would leave what hangs beyond the gear behind, were it not driven.
+        carried_slope: what gravity and springs grow by for each unit of position; 0 before anything is predicted.
         predicted, effort_rate: predicted effort, all of it, and its rate of change.
         largest_effort: predicted, of all trials; 0 before anything is predicted.
         bend: what effects of the model with a `slope` add for each unit of effort that is predicted more.
@@ -83,6 +84,7 @@ class Motion:
     late_s: float = 0.0
     back_emf: float = 0.0
     load_inertia: float = 0.0
+    carried_slope: FloatArray | float = 0.0
     misread_acceleration: FloatArray | float = 0.0
     measured_load: FloatArray | float = np.nan
     start_rate: FloatArray | float = np.nan

@@ -15,11 +15,10 @@ from compensator.lab.model.linear import Term
 from compensator.lab.recordings.differentiation import rate_of_change
 from compensator.lab.recordings.far_side import flights
 from compensator.lab.recordings.recording import FloatArray
-from compensator.lab.rows.dataset import Dataset, Trial
+from compensator.lab.rows.dataset import SLOPE_STEP, Dataset, Trial
 
 MOST_PASSES = 30  # each shrinks the change by the slope of what is misread, a few hundredths
 STEEP = 0.5
-SLOPE_STEP = 1e-5  # of the span of position
 SAME_SHARE = 1e-3  # of the fastest speed: corrections whose rates differ by less are the same
 
 
@@ -27,7 +26,7 @@ def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
     """The rows, with the model's own predicted load and effort in every motion."""
     dataset = at_true_position(dataset, terms)
     acceleration = np.concatenate([trial.motion.acceleration for trial in dataset.trials])
-    total, carried = np.zeros((2, len(acceleration)))
+    total, carried, slope = np.zeros((3, len(acceleration)))
     for term in terms:
         if term.effect.builds_on == "effort":
             continue  # its column is made of the rest
@@ -35,13 +34,14 @@ def with_own_prediction(dataset: Dataset, terms: Sequence[Term]) -> Dataset:
         total += part
         if term.effect.carried:
             carried += part
+            slope += term.coefficients @ dataset.slopes_at_full_rate(term.effect, term.shape)
     beyond, whole, of_load = _inertias(terms, dataset)
     load = carried + dataset.at_samples(beyond) * acceleration
     inertia = beyond if dataset.facts.arm_inertia_kg_m2 else whole
     driven = carried + dataset.at_samples(inertia) * acceleration
     parting = driven / dataset.at_samples(np.where(inertia == 0.0, np.inf, inertia))
     inertias = np.stack([inertia, whole, of_load])
-    dataset = dataset.with_prediction(load, total, parting, inertias, _late_s(terms), _back_emf(dataset, terms))
+    dataset = dataset.with_prediction(load, total, parting, slope, inertias, _late_s(terms), _back_emf(dataset, terms))
     steep = [term for term in terms if term.effect.slope is not None and np.any(term.coefficients)]
     if not steep:
         return dataset

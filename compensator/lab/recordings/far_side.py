@@ -2,7 +2,8 @@
 
 Let d be how far the motor side is ahead. Were nothing between them, d would grow as the load needs to be driven:
 d'' = (J a + gravity + springs) / J, the *parting*, all of it predicted. Free play holds d within a gap, an elastic
-transmission pulls it back; either way the gear carries less than a rigid one by J d''.
+transmission pulls it back; either way the gear carries less than a rigid one by J d''. And the load hangs where the far
+side is: d behind, where gravity and springs are less by d times their slope over the position.
 """
 
 import numpy as np
@@ -21,8 +22,10 @@ FADES_S = 0.5  # what drives it, after the last sample
 ABOUT_KNOWN = (0.6, 1.0, 1.6)  # shares of the free play that is told: so little is it known
 
 
-def parting_in_free_play(parting: FloatArray, gap: float, step_s: float) -> FloatArray:
-    """Acceleration d'' of a far side that is pushed by either flank of a gap and flies between them, shape (n,).
+def in_free_play(
+    parting: FloatArray, gap: float, step_s: float, slope: FloatArray | float = 0.0
+) -> tuple[FloatArray, FloatArray]:
+    """How a far side moves that is pushed by either flank of a gap and flies between them: d'' and d, shape (n,) each.
 
     Flanks do not bounce. Stoermer-Verlet, with the way held within the gap: a flank that is met takes the speed as the
     impulse that it is.
@@ -31,26 +34,27 @@ def parting_in_free_play(parting: FloatArray, gap: float, step_s: float) -> Floa
         parting: acceleration of the way d, if nothing held it, shape (n,).
         gap: whole free play, in units of position.
         step_s: between samples.
+        slope: of the parting over the position [1/s^2], shape (n,).
     """
     if len(parting) == 0:
-        return parting
-    second: FloatArray = np.diff(_ways_in_free_play(parting, 0.5 * gap, step_s), 2) / step_s**2
-    return second
+        return parting, parting
+    ways = _ways_in_free_play(parting, np.full(len(parting), slope), 0.5 * gap, step_s)
+    return np.diff(ways, 2) / step_s**2, ways[1:-1]
 
 
 def flights(parting: FloatArray, gap: float, step_s: float) -> list[FloatArray]:
-    """`parting_in_free_play` for free play as little known as a data sheet tells it. Arguments as there."""
-    return [parting_in_free_play(parting, share * gap, step_s) for share in ABOUT_KNOWN]
+    """Accelerations d'' as `in_free_play` has them, for free play as little known as a data sheet tells it."""
+    return [in_free_play(parting, share * gap, step_s)[0] for share in ABOUT_KNOWN]
 
 
 @njit(cache=True)
-def _ways_in_free_play(parting: FloatArray, high: float, step_s: float) -> FloatArray:
+def _ways_in_free_play(parting: FloatArray, slope: FloatArray, high: float, step_s: float) -> FloatArray:
     """How far the motor side is ahead: on a flank before the first sample, and resting after the last; (n + 2,)."""
     ways = np.empty(len(parting) + 2)
     way = before = high if parting[0] >= 0.0 else -high
     ways[0] = ways[1] = way
     for step in range(len(parting) - 1):
-        ahead = 2.0 * way - before + parting[step] * step_s**2
+        ahead = 2.0 * way - before + (parting[step] - slope[step] * way) * step_s**2
         before, way = way, min(max(ahead, -high), high)
         ways[step + 2] = way
     ways[-1] = way

@@ -24,6 +24,7 @@ ROW_CHOICES: tuple[RowChoice, ...] = ("sliding", "moving", "all")  # each holds 
 AT_ONCE = 2**18  # values at the full rate that are filtered at once: what a processor's own cache holds
 SIDE_BY_SIDE = 32  # columns that are filtered at once, at least
 EFFORT: tuple[str, Shape] = ("the effort itself", ())  # kept: the same whatever is predicted or misread
+SLOPE_STEP = 1e-5  # of the span of position, over which something is differenced
 BLOCK_S = 2.0  # rows closer than this are not independent
 FEWEST_ROWS = 20  # of a trial that is judged by itself
 UNTOLD = {
@@ -318,6 +319,21 @@ class Dataset:
             self.unfiltered[effect.name, shape] = made
         return made
 
+    def slopes_at_full_rate(self, effect: Effect, shape: Shape) -> FloatArray:
+        """What the columns of an effect of the position alone grow by for each unit of it, as `at_full_rate`."""
+        key = (f"slope of {effect.name}", shape)
+        if key not in self.unfiltered:
+            step = SLOPE_STEP * max((trial.motion.position_span for trial in self.trials), default=1.0)
+            motions = [trial.motion for trial in self.trials]
+            ahead, behind = (
+                np.concatenate(
+                    [effect.columns(replace(one, position=one.position + way), shape) for one in motions], axis=1
+                )
+                for way in (0.5 * step, -0.5 * step)
+            )
+            self.unfiltered[key] = (ahead - behind) / step
+        return self.unfiltered[key]
+
     @cached_property
     def samples(self) -> list[slice]:
         """Where each trial's samples are in an array (m,) over all trials' motions."""
@@ -374,6 +390,7 @@ class Dataset:
         load_effort: FloatArray,
         predicted: FloatArray,
         parting: FloatArray,
+        carried_slope: FloatArray,
         inertias: FloatArray,
         late_s: float = 0.0,
         back_emf: float = 0.0,
@@ -384,6 +401,7 @@ class Dataset:
             load_effort: of all trials' motions, one after the other, shape (m,).
             predicted: the same.
             parting: the same.
+            carried_slope: the same.
             inertias: `inertia_beyond`, `inertia` and `load_inertia` of each trial's motion, shape (3, trials).
             late_s: of every trial's motion.
             back_emf: of every trial's motion.
@@ -400,6 +418,7 @@ class Dataset:
                     inertia=whole,
                     load_inertia=tip,
                     parting=parting[own],
+                    carried_slope=carried_slope[own],
                     predicted=predicted[own],
                     effort_rate=rates[own],
                     largest_effort=largest,

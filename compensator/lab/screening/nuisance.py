@@ -68,14 +68,14 @@ def _far_side_weight(dataset: Dataset) -> dict[str, FloatArray]:
 
 
 def far_side_weight(motion: Motion) -> FloatArray:
-    """Weight [N m] that the arm lacks for being half the free play, and what it winds up, behind, shape (n,)."""
+    """Effort that the arm lacks for being half the free play, and what it winds up, behind, shape (n,)."""
     facts, carried = motion.facts, motion.load_effort
     behind_rad = 0.5 * (facts.backlash_rad or 0.0) * np.sign(carried)
     known_kg_m2 = motion.load_inertia_kg_m2 + (facts.arm_inertia_kg_m2 or 0.0)
     if facts.stiffness_n_m_rad and known_kg_m2 > 0.0 and motion.inertia_beyond > 0.0:
         effort_per_n_m = motion.inertia_beyond / known_kg_m2
         behind_rad = behind_rad + carried / (effort_per_n_m * facts.stiffness_n_m_rad)
-    lacking: FloatArray = motion.moment_n_m * np.cos(motion.position) * behind_rad
+    lacking: FloatArray = motion.carried_slope * behind_rad
     return lacking
 
 

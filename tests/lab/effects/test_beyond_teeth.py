@@ -37,6 +37,12 @@ def test_a_load_slows_the_swing_of_the_arm_on_one_stiffness():
         assert elasticity.columns(m, (HZ, DAMPING, SHARE))[0] == pytest.approx(-inertia * expected)
 
 
+def test_on_a_flank_the_load_weighs_what_it_weighs_half_a_gap_behind():
+    pushed, slope, gap = np.full(41, 3.0), np.linspace(1.0, 2.0, 41), 0.02
+    on_flank = replace(unknown(), parting=pushed, acceleration=pushed, carried_slope=slope)
+    assert backlash.columns(on_flank, (gap, 1.0))[0] == pytest.approx(-0.5 * gap * slope)
+
+
 @pytest.mark.parametrize("effect", [backlash, elasticity])
 def test_the_share_is_scanned_only_where_the_arm_is_not_told(effect):
     m = motion()

@@ -109,6 +109,7 @@ def test_the_predicted_load_never_holds_friction_or_the_rotor(noisy):
     predicted = with_own_prediction(noisy.dataset, noisy.terms)
     without_load = predicted.trials[0].motion  # nothing hangs: gravity of the arm alone
     assert without_load.load_effort == pytest.approx(value(noisy, "gravity") * np.sin(without_load.position))
+    assert without_load.carried_slope == pytest.approx(value(noisy, "gravity") * np.cos(without_load.position))
     total = noisy.terms[0].coefficients[0] * without_load.acceleration + 0.25 * np.sin(without_load.position)
     assert np.abs(without_load.effort_rate).max() > np.abs(np.gradient(total, 1 / 200)).mean()
 

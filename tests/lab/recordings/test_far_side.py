@@ -4,24 +4,24 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from compensator.lab.recordings.far_side import parting_in_free_play, parting_on_a_spring
+from compensator.lab.recordings.far_side import in_free_play, parting_on_a_spring
 
 STEP_S = 1e-3
 TIME_S = np.arange(0.0, 4.0, STEP_S)
 
 
 def test_a_far_side_that_is_pushed_from_one_flank_follows():
-    assert not parting_in_free_play(np.full(100, 3.0), 0.02, STEP_S).any()
-    assert not parting_in_free_play(np.full(100, -3.0), 0.02, STEP_S).any()
+    assert not in_free_play(np.full(100, 3.0), 0.02, STEP_S)[0].any()
+    assert not in_free_play(np.full(100, -3.0), 0.02, STEP_S)[0].any()
 
 
 def test_without_play_nothing_is_missing():
-    assert not parting_in_free_play(np.sin(TIME_S), 0.0, STEP_S).any()
+    assert not in_free_play(np.sin(TIME_S), 0.0, STEP_S)[0].any()
 
 
 def test_a_far_side_flies_through_the_gap_and_is_caught_by_the_other_flank():
     parting = np.where(TIME_S < 1.0, 2.0, -2.0)
-    found = parting_in_free_play(parting, 0.04, STEP_S)
+    found, _ = in_free_play(parting, 0.04, STEP_S)
     flight_s = np.sqrt(2.0 * 0.04 / 2.0)
     flying = (TIME_S > 1.0 + STEP_S) & (1.0 + flight_s - 3 * STEP_S > TIME_S)
     assert found[flying] == pytest.approx(-2.0)
@@ -33,8 +33,34 @@ def test_a_far_side_flies_through_the_gap_and_is_caught_by_the_other_flank():
 
 def test_a_wider_gap_takes_longer_to_cross():
     parting = np.where(TIME_S < 1.0, 2.0, -2.0)
-    last = [np.flatnonzero(parting_in_free_play(parting, gap, STEP_S))[-1] for gap in (0.01, 0.04)]
+    last = [np.flatnonzero(in_free_play(parting, gap, STEP_S)[0])[-1] for gap in (0.01, 0.04)]
     assert (last[1] - 1000) == pytest.approx(2 * (last[0] - 1000), abs=4)
+
+
+def test_a_far_side_hangs_half_the_gap_away_and_swings_within_it_as_a_pendulum_on_stiff_flanks():
+    """What a motor that is moved to and fro carries of a pendulum, beside the equation with flanks of stiff springs."""
+    inertia, moment, gap, stiffness, damping = 0.02, 0.5, 0.1, 4000.0, 8.0
+    q, a = 0.9 * np.sin(TIME_S * 3.0), -8.1 * np.sin(TIME_S * 3.0)
+
+    def carried(time_s, way, speed):
+        pressed = way - np.clip(way, -0.5 * gap, 0.5 * gap)
+        return stiffness * pressed + damping * speed * (pressed != 0.0)
+
+    def rates(time_s, state):
+        way, speed = state
+        angle = 0.9 * np.sin(3.0 * time_s) - way
+        needed = -8.1 * inertia * np.sin(3.0 * time_s) + moment * np.sin(angle)
+        return [speed, (needed - carried(time_s, way, speed)) / inertia]
+
+    swung = solve_ivp(rates, (0.0, TIME_S[-1]), [0.5 * gap, 0.0], t_eval=TIME_S, rtol=1e-7, atol=1e-9, max_step=1e-3)
+    wanted = carried(TIME_S, *swung.y) - (inertia * a + moment * np.sin(q))
+    parting, slope = a + moment * np.sin(q) / inertia, moment * np.cos(q)
+    second, ways = in_free_play(parting, gap, STEP_S, slope / inertia)
+    found = -(inertia * second + slope * ways)
+    resting = (np.abs(ways) >= 0.5 * gap - 1e-12) & (np.abs(swung.y[0]) >= 0.5 * gap)
+    off = np.abs(found - wanted)[resting] / (0.5 * gap * moment)
+    assert np.quantile(off, 0.95) < 0.05  # but where a blow sounds on in the stiff flank
+    assert np.median(np.abs(wanted[resting])) > 0.25 * gap * moment  # were the load where the motor is: nothing
 
 
 def test_a_stiff_spring_lags_by_the_second_rate_of_change():

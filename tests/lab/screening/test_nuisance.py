@@ -49,7 +49,7 @@ def test_an_arm_that_is_behind_weighs_less_by_what_is_known():
     motion = dataset.trials[2].motion
     highest = int(np.argmax(motion.position))
     expected_rad = 0.5 * GAP_RAD + motion.load_effort[highest] / STIFFNESS_N_M_RAD
-    expected = motion.moment_n_m * np.cos(motion.position[highest]) * expected_rad
+    expected = motion.moment_n_m * np.cos(motion.position[highest]) * expected_rad  # the effort is a torque
     assert far_side_weight(motion)[highest] == pytest.approx(expected, rel=0.1)
 
 

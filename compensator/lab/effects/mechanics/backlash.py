@@ -5,7 +5,7 @@ import numpy as np
 from compensator.lab.effects.effect import Effect, Motion, Parameter, Shape
 from compensator.lab.effects.mechanics.beyond_teeth import arm_shares, beyond_teeth
 from compensator.lab.recordings.facts import Facts
-from compensator.lab.recordings.far_side import PLAUSIBLE_SHARE, TOLD, parting_in_free_play
+from compensator.lab.recordings.far_side import PLAUSIBLE_SHARE, TOLD, in_free_play
 from compensator.lab.recordings.recording import FloatArray
 
 
@@ -16,14 +16,19 @@ def shapes(motion: Motion) -> list[Shape]:
 
 
 def columns(motion: Motion, shape: Shape) -> FloatArray:
-    """What the gear carries less while the far side flies through the gap, and the blow that ends it.
+    """What the gear carries less while the far side flies through the gap, the blow that ends it, and the load's place.
+
+    On either flank the load hangs half a gap from where a rigid gear would have it.
 
     Args:
         motion: of the motor side.
         shape: gap, and share of the arm in the inertia without load.
     """
     inertia, parting = beyond_teeth(motion, shape[1])
-    return -inertia * parting_in_free_play(parting, shape[0], motion.step_s)[None]
+    if inertia <= 0.0:
+        return np.zeros((1, len(parting)))
+    second, ways = in_free_play(parting, shape[0], motion.step_s, motion.carried_slope / inertia)
+    return -(inertia * second + motion.carried_slope * ways)[None]
 
 
 def told(facts: Facts, shape: Shape) -> bool:
@@ -37,11 +42,12 @@ EFFECT = Effect(
     physics=(
         "Where the load would run ahead of the motor, the teeth let go of it: it flies through the free play, and the "
         "motor carries nothing of it until the other flank catches it with a blow. How the far side flies follows from "
-        "the motion of the motor and from the load that the model predicts."
+        "the motion of the motor and from the load that the model predicts. On a flank the load hangs half a gap from "
+        "where the motor is, and weighs accordingly."
     ),
     equation=(
-        r"-s\,\hat J_a\,\ddot d,\quad \ddot d = \hat\tau_{load}/\hat J_a \text{ between the flanks, "
-        r"} |d| \le b/2"
+        r"-s\,(\hat J_a\,\ddot d + \hat\tau_{load}'(q)\, d),\quad \hat J_a\,\ddot d = \hat\tau_{load} - "
+        r"\hat\tau_{load}'(q)\, d \text{ between the flanks, } |d| \le b/2"
     ),
     columns=columns,
     parameters=(Parameter("load beyond the gap over the load that is known", "1", *PLAUSIBLE_SHARE),),
