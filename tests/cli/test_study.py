@@ -10,6 +10,7 @@ import pytest
 from bench.cli.lab import diagnosis_tables, study_tables
 from bench.cli.lab.diagnosis_tables import next_step
 from bench.study.diagnosis import search as search_module
+from bench.study.diagnosis.findings import not_judged
 from bench.study.models.diagnosis import Diagnosis, EffectClass, Finding, ProvisionalTerm
 from bench.study.report import report as report_module
 from compensator.lab.effects.offered import LeftOut
@@ -269,3 +270,13 @@ def test_every_reason_against_an_effect_and_odd_gains_are_explained_below(monkey
     assert "gains count each row by how well it is known" in below
     assert "not spring: may be luck, gain not sure" in below
     assert "no evidence (score not above 0): cogging" in below
+
+
+def test_effects_that_are_not_judged_for_one_reason_share_a_line():
+    reasons = {"dead_time": "does not show", "supply_sag": "does not show", "warm_up": "needs session_s"}
+    told = [not_judged(effect, f"{effect} {reason}") for effect, reason in reasons.items()]
+    noted = Finding(code="few-trials", values={}, text="Too few trials.")
+    assert diagnosis_tables.why_not_judged([noted, *told]) == [
+        "Not judged: dead_time, supply_sag: each does not show.",
+        "Not judged: warm_up needs session_s.",
+    ]

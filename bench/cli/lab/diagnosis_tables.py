@@ -11,7 +11,7 @@ from compensator.lab.chance import chance_cell
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.json_types import Json
     from bench.study.models.change import Searched
-    from bench.study.models.diagnosis import Diagnosis, NotDiagnosed, Ranked
+    from bench.study.models.diagnosis import Diagnosis, Finding, NotDiagnosed, Ranked
     from bench.study.models.study import Extended
     from bench.study.suggestion.suggested import Suggested
 
@@ -31,8 +31,22 @@ def diagnosis(found: "Diagnosis") -> None:
     _ranking(found.ranking)
     if found.provisional:
         say(found.provisional.sentence)
-    for note in found.notes:
-        say(note)
+    for finding in found.findings:
+        if finding.code not in ("data-problem", "not-judged"):
+            say(finding.text)
+    for line in why_not_judged(found.findings):
+        say(line)
+
+
+def why_not_judged(findings: Sequence["Finding"]) -> list[str]:
+    """A line for each reason why effects could not be judged on the trials."""
+    effects: dict[str, list[str]] = {}
+    for one in findings:
+        if one.code == "not-judged":
+            effect = str(one.values["effect"])
+            effects.setdefault(str(one.values["reason"]).removeprefix(f"{effect} "), []).append(effect)
+    some = {reason: f"{', '.join(names)}{': each' * (len(names) > 1)}" for reason, names in effects.items()}
+    return [f"Not judged: {names} {reason}." for reason, names in some.items()]
 
 
 def _ranking(ranking: Sequence["Ranked"]) -> None:
