@@ -37,6 +37,14 @@ def test_a_wider_gap_takes_longer_to_cross():
     assert (last[1] - 1000) == pytest.approx(2 * (last[0] - 1000), abs=4)
 
 
+def test_a_far_side_that_flies_far_swings_as_the_slope_of_its_load_pulls():
+    parting, slope, half = np.where(TIME_S < 1.0, 30.0, -2.0), 4.0, 5.0
+    _, ways = in_free_play(parting, 2.0 * half, STEP_S, slope)
+    expected = -0.5 + (half + 0.5) * np.cos(2.0 * (TIME_S - 1.0))
+    flying = (TIME_S > 1.0) & (TIME_S < 2.2)
+    assert ways[flying] == pytest.approx(expected[flying], abs=0.03)
+
+
 def test_a_far_side_hangs_half_the_gap_away_and_swings_within_it_as_a_pendulum_on_stiff_flanks():
     """What a motor that is moved to and fro carries of a pendulum, beside the equation with flanks of stiff springs."""
     inertia, moment, gap, stiffness, damping = 0.02, 0.5, 0.1, 4000.0, 8.0
