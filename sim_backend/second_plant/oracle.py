@@ -46,7 +46,7 @@ class Evidence:
     """How far a mechanism stands out; see above.
 
     Attributes:
-        ratio: r.
+        ratio: r; infinite where the mechanism holds the joint fast, so that no row moves.
         detectability: d'.
         rival: the mechanism that is most like it.
         independent: rows, of those that move.
@@ -82,6 +82,8 @@ def evidence(joint: DrawnJoint, name: str, floor: Floor | None = None) -> Eviden
     """
     floor = floor or floor_of(joint, name)
     rows, shown, basis = _shown(joint, replace(joint, hidden=()), floor)
+    if not len(shown):
+        return Evidence(float("inf"), 0.0, "", 0.0)
     moving, weight = rows.moving, 1.0 / floor.left[rows.stratum]
     ratio, independent = float(np.sqrt(np.mean(shown**2))), len(shown) / floor.dependent
     correlation, rival = 0.0, ""

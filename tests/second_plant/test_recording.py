@@ -82,6 +82,18 @@ def test_a_measured_supply_hides_nothing_of_the_sag_and_a_nominal_one_all():
     assert evidence(nominal, "sag").ratio > 3.0 * evidence(measured, "sag").ratio
 
 
+def test_what_holds_a_joint_fast_is_too_large_to_be_measured(monkeypatch):
+    """No row moves, as with a cogging that the motor cannot pass: no size can be made of what is left of none."""
+    joint = short(draw_joint(9), 4)
+    floor = floor_of(joint, "")
+    held = [
+        replace(one, channels={**one.channels, "position_rad": np.zeros(len(one.effort))})
+        for one in record(joint, quiet=True)
+    ]
+    monkeypatch.setattr(oracle, "record_beside", lambda *_: (held, held))
+    assert evidence(joint, "", floor).ratio == np.inf
+
+
 def test_the_evidence_grows_with_the_size_and_is_none_without_the_channel():
     loose, tight = (short(draw_joint(9, ("tooth_loss",), (size,))) for size in (0.02, 0.2))
     floor = floor_of(loose, "tooth_loss")  # of the same joint without it

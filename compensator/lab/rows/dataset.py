@@ -26,6 +26,7 @@ SIDE_BY_SIDE = 32  # columns that are filtered at once, at least
 EFFORT: tuple[str, Shape] = ("the effort itself", ())  # kept: the same whatever is predicted or misread
 SLOPE_STEP = 1e-5  # of the span of position, over which something is differenced
 BLOCK_S = 2.0  # rows closer than this are not independent
+LEAST_SEEN = 0.01  # of the noise's power: a filter that sees so little rings
 FEWEST_ROWS = 20  # of a trial that is judged by itself
 UNTOLD = {
     "gear_ratio": "needs the gear ratio, which the rig does not tell; put [gear] ratio into rig.toml",
@@ -177,6 +178,15 @@ class Dataset:
     def constant(self) -> FloatArray:
         """1 as the rows see it, shape (N,): less where their filter sees less than all."""
         return self.stack([np.ones((1, len(trial.motion.time_s))) for trial in self.trials])[:, 0]
+
+    @cached_property
+    def noise_seen(self) -> FloatArray:
+        """Of white noise in the effort, what each row sees over what one sees that sees all, about; shape (N,)."""
+        if self.sees_all or self.rows != "sliding":
+            return np.ones(len(self.effort))
+        power = self.stack([trial.window[None] for trial in self.trials])[:, 0]  # by their windows once more
+        seen: FloatArray = np.sqrt(np.clip(power, LEAST_SEEN, 1.0))
+        return np.where(self.regime == Regime.SLIDING, seen, 1.0)
 
     @property
     def is_predicted(self) -> bool:

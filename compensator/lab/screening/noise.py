@@ -132,14 +132,14 @@ class Noise:
 def _coloured(dataset: Dataset, rows: BoolArray, fitted: Base) -> list[tuple[slice, FloatArray]]:
     """Rows of each place, and their covariance (n, n), by what a fit of the chosen rows (N,) has left."""
     places, longest = _places(dataset, rows, fitted.residual)
-    pairs = np.sum([place.by_lag(np.ones_like(place.lags), longest) for place in places], axis=0)
+    pairs = np.sum([place.by_lag(np.outer(place.scale, place.scale), longest) for place in places], axis=0)
     residual = fitted.residual[:, None]
     left = np.sum([_by_lag(place, residual, residual, longest) for place in places], axis=0)
     free = len(residual) / max(len(residual) - fitted.basis.shape[1], 1)
-    kernels = _kernels(free * left / np.maximum(pairs, 1))
+    kernels = _kernels(free * left / np.maximum(pairs, TINY))
     for _ in range(PASSES):
         taken = _taken(places, fitted.basis, kernels, longest)
-        kernels = _kernels((left + taken) / np.maximum(pairs, 1))
+        kernels = _kernels((left + taken) / np.maximum(pairs, TINY))
     return [(place.rows, place.covariance(kernels)) for place in places]
 
 
@@ -166,7 +166,7 @@ def _places(dataset: Dataset, rows: BoolArray, residual: FloatArray) -> tuple[li
     velocity = np.abs(dataset.rows_of([trial.motion.velocity for trial in dataset.trials])[rows])
     speed = np.searchsorted(np.quantile(velocity, np.arange(1, SPEEDS) / SPEEDS), velocity)
     overall = _power(residual, speed) / np.maximum(np.bincount(speed, minlength=SPEEDS), 1)
-    found, longest, start = [], 1, 0
+    found, longest, start, seen = [], 1, 0, dataset.noise_seen[rows]
     for trial, there in zip(dataset.trials, dataset.trial_rows, strict=True):
         times_s = dataset.time_of(trial)
         if not len(times_s):
@@ -175,7 +175,7 @@ def _places(dataset: Dataset, rows: BoolArray, residual: FloatArray) -> tuple[li
         longest = max(longest, round(BLOCK_S / period_s))
         grid = np.round((times_s[rows[there]] - times_s[0]) / period_s).astype(np.int64)
         own = slice(start, start + len(grid))
-        scale = _scale(residual[own], speed[own], overall)
+        scale = _scale(residual[own], speed[own], overall) * seen[own]
         found += [
             _Place(slice(start + first, start + last), grid[first:last], speed[own][first:last], scale[first:last])
             for first, last in _cut(grid)

@@ -38,6 +38,18 @@ def test_an_effort_of_a_joint_that_stands_moves_no_row_in_steady_sliding():
     assert whole[plain.regime != Regime.SLIDING] == pytest.approx(moved[plain.regime != Regime.SLIDING])
 
 
+def test_a_row_beside_a_stop_sees_as_much_of_white_noise_as_is_said():
+    plain, draws = dataset(recordings(trials=STROKES, seed=2)), 400
+    random = np.random.default_rng(3)
+    noise = [random.standard_normal((draws, len(trial.window))) for trial in plain.trials]
+    sliding, whole = plain.regime == Regime.SLIDING, plain.seen_by("moving")
+    usual = np.sqrt(np.mean(whole.stack(noise)[sliding] ** 2))
+    measured = np.sqrt(np.mean(plain.stack(noise)[sliding] ** 2, axis=1)) / usual
+    assert plain.noise_seen[sliding].min() < 0.6
+    assert plain.noise_seen[sliding] == pytest.approx(measured, abs=0.15)
+    assert (whole.noise_seen == 1.0).all()
+
+
 def test_rows_that_are_all_counted_see_all():
     made = recordings(trials=STROKES, seed=2)
     every = make_dataset(made, FACTS, Processing(cutoff_hz=6.0, rows="all"))

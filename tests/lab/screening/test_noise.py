@@ -17,8 +17,8 @@ EFFORT = 8.0
 STROKE = 30  # rows between two stops
 
 
-def dataset(velocity: list[np.ndarray] | None = None) -> SimpleNamespace:
-    """As much of a dataset as noise looks at; velocity of each trial."""
+def dataset(velocity: list[np.ndarray] | None = None, seen: float | np.ndarray = 1.0) -> SimpleNamespace:
+    """As much of a dataset as noise looks at; velocity of each trial, and how much of noise each row of one sees."""
     time_s = PERIOD_S * np.arange(ROWS)
     velocity = [speed()] * TRIALS if velocity is None else velocity
     block = np.concatenate([3 * trial + (time_s // 2.0).astype(int) for trial in range(TRIALS)])
@@ -27,6 +27,7 @@ def dataset(velocity: list[np.ndarray] | None = None) -> SimpleNamespace:
         rows_of=np.concatenate,
         effort=np.full(TRIALS * ROWS, EFFORT),
         steadiness=np.ones(TRIALS * ROWS),
+        noise_seen=np.tile(seen * np.ones(ROWS), TRIALS),
         time_of=lambda _trial: time_s,
         trial_index=np.repeat(np.arange(TRIALS), ROWS),
         trial_rows=[slice(trial * ROWS, (trial + 1) * ROWS) for trial in range(TRIALS)],
@@ -103,6 +104,22 @@ def test_whitened_noise_is_white_and_comes_back():
     assert noise.as_measured(noise.whitened(other)) == pytest.approx(other)
 
 
+def test_rows_that_see_less_of_the_noise_are_white_as_all_others_are():
+    """Near the ends of a stroke: taken for as noisy as the others, they would seem to be too quiet, these too noisy."""
+    random = np.random.default_rng(11)
+    beside_stop = np.arange(ROWS) % STROKE >= STROKE - 6
+    seen = np.where(beside_stop, 0.5, 1.0)
+    residual = np.tile(seen, TRIALS) * coloured(random)
+    there = np.tile(beside_stop, TRIALS)
+    powers = []
+    for told in (seen, 1.0):
+        noise = Noise.learnt(dataset(STEADY, told), ALL, Base(NOTHING, residual))
+        white = noise.whitened(residual[:, None])[:, 0]
+        powers.append([float(np.mean(white[rows] ** 2)) for rows in (there, ~there)])
+    assert powers[0] == pytest.approx([1.0, 1.0], abs=0.2)
+    assert powers[1][0] < 0.6
+
+
 def test_rows_left_out_count_for_nothing():
     random = np.random.default_rng(2)
     rows = random.random(len(ALL)) < 0.6
@@ -120,6 +137,7 @@ def test_a_long_trial_is_cut_where_its_noise_has_been_forgotten():
     one = SimpleNamespace(
         trials=(SimpleNamespace(motion=SimpleNamespace(velocity=np.ones(rows))),),
         rows_of=np.concatenate,
+        noise_seen=np.ones(rows),
         time_of=lambda _trial: time_s,
         trial_rows=[slice(0, rows)],
         stretches=lambda chosen: len(np.unique(time_s[chosen] // 2.0)),
