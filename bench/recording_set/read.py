@@ -48,6 +48,7 @@ def read_recording_set(
     """
     paths = [Path(one).absolute() for one in ([path] if isinstance(path, Path | str) else path)]
     with open_container(*paths) as container:
+        own = mapping is None and container.has(MAPPING_FILE)
         mapping = mapping or own_mapping(container)
         entries = entries_of(container, mapping)
         tables = [table_of(container, entry, mapping) for entry in entries]
@@ -57,7 +58,8 @@ def read_recording_set(
         recordings = [_read(entry, table, mapping) for entry, table in zip(entries, tables, strict=True)]
         if rig is None:  # only now: nobody is to write one for a file that is no recording
             raise RecordingSetError(container.path.name, _without_rig(paths[0].parent))
-        notes = [f"{table.place}: {table.told}" for table in tables if isinstance(table, Table) and table.told]
+        notes = [f"{place(container, MAPPING_FILE)}: the mapping that was used"] if own else []
+        notes += [f"{table.place}: {table.told}" for table in tables if isinstance(table, Table) and table.told]
     check_recordings(recordings, rig, mapping)
     notes += [*_without_load(recordings), *_unlike(recordings)]
     return RecordingSet(name_of_set(paths), rig, recordings, tuple(notes))

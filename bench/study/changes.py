@@ -15,7 +15,7 @@ from compensator.lab.at_rest.breakaway_comparison import breakaway_estimates, co
 from compensator.lab.diagnosis.confirmation import LEAST_GAIN
 from compensator.lab.diagnosis.physical import TOLD, why_impossible
 from compensator.lab.effects.catalogue import effect_named
-from compensator.lab.model.fit import widened
+from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import Gain, held_out_gain
 from compensator.lab.model.held_out_error import HeldOut
@@ -70,12 +70,12 @@ def drop_effect(store: Store, study_id: int, effect: str, model_id: int | None =
 
 def _change(store: Store, material: Material, parent: ModelRow, effects: list[str], done: str, effect: str) -> Changed:
     progress.enter(FITTING)
-    fit = material.fit(effects)
+    old, added = material.fit_of(parent, beside=effects), set(effects) - set(parent.effects)
+    with lab_errors():  # from its parent's shapes on, as a diagnosis and a search add it
+        fit = fit_effects(old, effects) if added else material.fit(effects)
     # a change is judged on the rows where the changed effect lives; the ladder, on those that the study counts
-    added = set(effects) - set(parent.effects)
     changed = [effect_named(name) for name in set(effects) ^ set(parent.effects)]
     rows = material.dataset.choice_for(changed)
-    old = material.fit_of(parent, beside=effects)
     alike = bool((fit.training == old.training).all())
     new = fit if alike else material.fit(effects, fit.shapes, beside=parent.effects)
     progress.enter(JUDGING)

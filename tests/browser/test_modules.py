@@ -193,7 +193,8 @@ RANKED = {
     ("changed", "said", "unsaid"),
     [
         ({}, "would fall by 20 % (10 % to 30 %). All of the interval is a gain.", "No change"),
-        ({"gain": -3.8e-7, "gain_low": -1e-6, "gain_high": 2e-7}, "No change of the held-out error. Of", "rise"),
+        ({"why_not": ["may be luck (p = 0.5)"]}, "Not named: may be luck (p = 0.5).", "chance would do as well"),
+        ({"gain": -3.8e-7, "gain_low": -1e-6, "gain_high": 2e-7}, "No change of the held-out error.", "rise"),
         (
             {"gain": 1e-7, "gain_low": -0.01, "gain_high": 0.02},
             "No change of the held-out error (−1 % to 2 %",

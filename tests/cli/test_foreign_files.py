@@ -64,6 +64,33 @@ def test_load_and_rig_are_told_by_what_a_guess_left_as_comments(command, tmp_pat
     assert read_rig(tmp_path / "rig.toml").gear.ratio == 20
 
 
+def test_a_mapping_that_lies_in_the_folder_is_used_and_named_and_one_beside_it_is_told_of(command, tmp_path):
+    folder = tmp_path / "logs"
+    folder.mkdir()
+    random, time_s = np.random.default_rng(5), np.arange(0.0, 8.0, 0.01)
+    amps = 0.2 * np.tanh(20.0 * np.cos(3.0 * time_s)) + 0.01 * random.standard_normal(len(time_s))
+    rows = np.column_stack([time_s, 60.0 * np.sin(3.0 * time_s), amps])
+    np.savetxt(folder / "log1.csv", rows, "%.5f", ",", header="t,angle,amps", comments="")
+    answer = ["--take", "angle=position[deg]", "--take", "amps=current[A]"]
+    guessed = command("import", "--guess", "logs", *answer)
+    assert guessed.exit_code == 0, guessed.output
+    assert {path.name for path in folder.iterdir()} == {"log1.csv", "mapping.toml", "rig.toml"}
+    for words in (["import", "logs"], ["explain", "logs", "--html", "logs.html"]):
+        read = command(*words)
+        assert read.exit_code == 0, read.output
+        assert "logs/mapping.toml: the mapping that was used" in read.stdout
+    asked = command("explain", "logs", *answer)
+    assert asked.exit_code == 3, "it is not passed over"
+    assert "mapping.toml: tells what each column is" in asked.stderr
+    for place in (folder, tmp_path):
+        (folder / "mapping.toml").replace(place / "mapping.toml")
+        asked = command("explain", "logs/log1.csv", "--json")
+        assert asked.exit_code == 3
+        named = (place / "mapping.toml").relative_to(tmp_path)
+        assert f"{named} is not used; where it is of these files, add: --mapping {named}" in asked.stderr
+        (place / "mapping.toml").replace(folder / "mapping.toml")
+
+
 def test_repeats_that_do_not_move_alike_are_warned_of(command, tmp_path):
     for name, position in (("one", POSITION_RAD), ("two", POSITION_RAD), ("other", VELOCITY_RAD_S[::-1])):
         (tmp_path / f"{name}.csv").write_text(rows({**COLUMNS, "position_rad": position}))

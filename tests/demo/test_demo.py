@@ -37,6 +37,8 @@ def test_the_hidden_effect_is_named_and_its_addition_lowers_the_held_out_error(d
     assert section.tables[0].rows[0][0] == "Direction-asymmetric viscous friction"
     base, added, floor = (row[2] for row in section.tables[1].rows)
     assert floor < added < 0.6 * base
+    promised = section.tables[0].rows[0][3]
+    assert added == pytest.approx(promised, rel=1e-6), "the model that is added is the one that was judged"
 
 
 def test_the_readme_states_what_the_demonstration_prints(demo):

@@ -95,8 +95,8 @@ def test_the_ranking_is_in_the_order_that_it_says():
         ("viscous_asymmetry", []),
         ("spring", ["viscous_asymmetry first"]),
         ("coulomb_asymmetry", ["viscous_asymmetry first"]),
-        ("cogging", ["may be luck"]),
-        ("stribeck", ["may be luck"]),
+        ("cogging", ["may be luck (p = 0.5)"]),
+        ("stribeck", ["may be luck (p = 0.5)"]),
     ]
     assert "not named: viscous_asymmetry first" in told[1].sentence
 

@@ -4,6 +4,7 @@ import shlex
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from bench.cli.lab.study_tables import HELD_OUT
 from bench.cli.output import percent, say, table, text
 from bench.json_types import as_option
 from compensator.lab.chance import chance_cell
@@ -28,7 +29,7 @@ def diagnosis(found: "Diagnosis") -> None:
         say(members.sentence)
         if members.separating_trial:
             say(f"  to tell them apart, record: {members.separating_trial}")
-    _ranking(found.ranking)
+    _ranking(found.ranking, found.held_out_kind)
     if found.provisional:
         say(found.provisional.sentence)
     for finding in found.findings:
@@ -49,8 +50,8 @@ def why_not_judged(findings: Sequence["Finding"]) -> list[str]:
     return [f"Not judged: {names} {reason}." for reason, names in some.items()]
 
 
-def _ranking(ranking: Sequence["Ranked"]) -> None:
-    """The effects and their numbers, and below what each lacks."""
+def _ranking(ranking: Sequence["Ranked"], held_out_kind: str) -> None:
+    """The effects and their numbers, and below what the errors are of, and what each effect lacks."""
     from bench.study.diagnosis.findings import numbers_explained  # imported when needed: `--help` starts at once
     from bench.study.models.diagnosis import ORDER
 
@@ -58,7 +59,6 @@ def _ranking(ranking: Sequence["Ranked"]) -> None:
         (
             one.effect,
             one.score,
-            chance_cell(one.p_value),
             percent(one.held_out_before),
             percent(one.held_out_after),
             f"{_tenths(one.gain)}, {_tenths(one.gain_low)} .. {_tenths(one.gain_high)}",
@@ -67,10 +67,9 @@ def _ranking(ranking: Sequence["Ranked"]) -> None:
         for one in ranking
     ]
     if rows:
-        columns = ["effect", "score#", "p#", "before#", "after#", "gain, low .. high [%]#", "d'#"]
+        columns = ["effect", "score#", "before#", "after#", "gain, low .. high [%]#", "d'#"]
         table(f"Effects by evidence: {ORDER}", columns, rows)
-        if explained := numbers_explained(ranking):
-            say(explained)
+        say(" ".join(filter(None, (HELD_OUT[held_out_kind], numbers_explained(ranking)))))
         for line in why_not_named(ranking):
             say(line)
 

@@ -8,7 +8,16 @@ import typer
 
 from bench.cli.bench_session import session_of
 from bench.cli.output import Json, console, free_page, percent, print_json, refuse_taken, say, table, write_whole
-from bench.cli.records.guessed import CountsPerTurn, RateHz, SupplyV, Take, known_of, remark_imported_before, show
+from bench.cli.records.guessed import (
+    CountsPerTurn,
+    RateHz,
+    SupplyV,
+    Take,
+    known_of,
+    remark_imported_before,
+    remark_mapping_beside,
+    show,
+)
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from rich.progress import Progress
@@ -48,6 +57,8 @@ def explain(
     from bench.study.report.model_sections import change_of
 
     chosen_rig = None if rig is None else read_rig(rig)
+    if mapping is None:
+        remark_mapping_beside(path)
     known = known_of(take, counts_per_turn, rate_hz, supply_v)
     recordings, guess = read_unknown(path, chosen_rig, known, None if mapping is None else read_mapping(mapping))
     called = name or recordings.name

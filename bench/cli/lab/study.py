@@ -15,6 +15,7 @@ from bench.cli.output import Json, free_page, print_json, refuse_taken, say, tab
 
 if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.store import Store
+    from bench.study.models.change import Changed
     from bench.study.models.diagnosis import Diagnosis
     from bench.study.models.study import Study
 
@@ -200,7 +201,16 @@ def add_command(
     """Add an effect to a model and refit: the error before and after."""
     from bench.study.changes import add_effect
 
-    _show(context, as_json, study_tables.change, add_effect, study, effect, model)
+    session = session_of(context)
+
+    def show(found: "Changed") -> None:
+        study_tables.change(found)
+        say(session.in_full(f"next: friction-bench study diagnose {study}"))
+        say(
+            session.in_full(f"score and p of {effect}: friction-bench study diagnose {study} --model {found.parent_id}")
+        )
+
+    _show(context, as_json, show, add_effect, study, effect, model)
 
 
 @app.command("drop")

@@ -16,6 +16,13 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
     from bench.study.models.units import UnitComparison, UnitParameter
     from bench.study.refit import Refitted
 
+HELD_OUT = {
+    "hold-out": "Held out: on trials that no model of the study is fitted to.",
+    "leave-one-trial-out": "Held out: each trial in turn is predicted by a fit to all the others.",
+    "leave-one-block-out": "Held out: each stretch in turn is predicted by a fit to all the others.",
+}
+"""What a held-out error is of, by how trials are held out."""
+
 
 def study(found: "Study") -> None:
     """A study and its trials."""
@@ -244,6 +251,8 @@ def ladder(found: "Ladder") -> None:
     errors = ["training error#", "held-out error#", "breakaway#", "position in closed loop#"]
     columns = ["model#", "change", *errors, "reflected load, error [g]#"]
     table(f"Ladder of study {found.study_id}: errors in the effort, {found.rows}", columns, rows)
+    if kind := found.rungs[-1].held_out_kind:
+        say(HELD_OUT[kind])
     if found.floor is not None:
         say(f"floor, from repeated trials, as far as the best model can tell: {percent(found.floor)}")
 

@@ -1,5 +1,7 @@
 """What `import --guess` and `explain` print of unknown files, and the options with which a user answers."""
 
+import shlex
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -75,6 +77,14 @@ def remark_imported_before(store: "Store", recordings: "RecordingSet") -> None:
 
     for note in imported_before(store, recordings):
         remark(note)
+
+
+def remark_mapping_beside(paths: Sequence[Path]) -> None:
+    """Say, on stderr, that a mapping which lies here or beside them is not used; a folder brings its own along."""
+    beside = [folder / "mapping.toml" for folder in (Path(), paths[0].parent)]
+    found = next((one for one in beside if one.exists()), None)
+    if found and not any((one / "mapping.toml").exists() for one in paths):
+        remark(f"{found} is not used; where it is of these files, add: --mapping {shlex.quote(str(found))}")
 
 
 def _picture(outline: tuple[float, ...]) -> str:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
 
 _GUESS = (
     "Import nothing: show what each column seems to be, by its name and values, and write that to a mapping file "
-    "(--mapping, or mapping.toml). What is not sure is asked; answer with the options below."
+    "(--mapping, or mapping.toml; of a folder, in it). What is not sure is asked; answer with the options below."
 )
 
 
@@ -99,7 +99,8 @@ def import_(
 
     if guess:
         known = known_of(take, counts_per_turn, rate_hz, supply_v)
-        _guess(session_of(context), path, rig, known, mapping or Path("mapping.toml"))
+        beside = path[0] if len(path) == 1 and path[0].is_dir() else Path()  # a set brings its mapping along
+        _guess(session_of(context), path, rig, known, mapping or beside / "mapping.toml")
         return
     chosen_rig = None if rig is None else read_rig(rig)
     if joint and chosen_rig is not None and mapping is None and len(path) == 1:

@@ -119,9 +119,12 @@ def read_unknown(
     """
     paths = [Path(one).absolute() for one in paths]
     with open_container(*paths) as container:
-        mapping = mapping or (own_mapping(container) if container.has(MAPPING_FILE) else None)
-    if mapping is not None:
-        linear = any(f"{name}_m" in mapping.columns for name in ("position", "target"))
+        told = mapping or (own_mapping(container) if container.has(MAPPING_FILE) else None)
+    if told is not None:
+        if known != NOTHING:
+            message = "tells what each column is: put it there, and leave --take and the like out"
+            raise RecordingSetError(MAPPING_FILE if mapping is None else "the mapping", message)
+        linear = any(f"{name}_m" in told.columns for name in ("position", "target"))
         assumed = Rig(name=name_of_set(paths), joint="linear" if linear else "rotary")
         return read_recording_set(paths, mapping, rig or _own_rig(paths) or assumed), None
     if known == NOTHING and (own := _as_recording_set(paths, rig)) is not None:

@@ -10,13 +10,14 @@ from bench.study.joint import joint_of
 from bench.study.keep import kept_of
 from bench.study.material import load_model
 from bench.study.models.diagnosis import Diagnosis, EffectClass, Joint, Picture, ProvisionalTerm, Ranked
-from compensator.lab.chance import stated
+from compensator.lab.chance import chance_in_words, stated
 from compensator.lab.diagnosis import diagnosis
-from compensator.lab.diagnosis.confirmation import doubts, explained_part, slight_one
+from compensator.lab.diagnosis.confirmation import LUCK, doubts, explained_part, slight_one
 from compensator.lab.diagnosis.unfollowed import Provisional, provisional
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.gain import shown
+from compensator.lab.model.validation import held_out
 from compensator.lab.rows.dataset import Dataset
 from compensator.lab.rows.drivers import DRIVERS
 
@@ -62,6 +63,7 @@ def answer_of(
         classes=[
             _class(members, _has_hidden_rival(members, fit, found), joint) for members in found.classes[:1] if named
         ],
+        held_out_kind=held_out(fit).kind,
         ranking=[] if found.too_short else _ranking(fit.dataset, found, named, first),
         slight=bool(advice),
         advice=advice,
@@ -147,7 +149,8 @@ def _ranking(dataset: Dataset, found: diagnosis.Diagnosis, named: set[str], firs
 
 def _ranked(dataset: Dataset, candidate: diagnosis.Candidate, named: set[str], first: str) -> Ranked:
     effect = candidate.effect
-    why_not = doubts(candidate)
+    luck = f"{LUCK} ({chance_in_words(candidate.p_value)})"
+    why_not = [luck if doubt == LUCK else doubt for doubt in doubts(candidate)]
     if not why_not and first and effect.name not in named:
         why_not = [f"{first} first"]
     return Ranked(

@@ -89,7 +89,7 @@ class Ranked(StudyModel):
     why_not: list[str] = Field(
         description="why it is not named: what it lacks, or where it lacks nothing, what is to be added first; of one "
         "that is named, what it lacks beside the one that it cannot be told from",
-        examples=[["may be luck", "gain not sure"], ["viscous_asymmetry first"]],
+        examples=[["may be luck (p = 0.57)", "gain not sure"], ["viscous_asymmetry first"]],
     )
     sentence: str
     picture: Picture | None
@@ -125,6 +125,7 @@ class Diagnosis(StudyModel):
     notes: list[str] = Field(description="sentences; `findings` has them with their codes")
     data_problems: list[str]
     classes: list[EffectClass]
+    held_out_kind: str = Field(description="hold-out, leave-one-trial-out or leave-one-block-out")
     ranking: list[Ranked] = Field(description=f"of all families of effects, {ORDER}")
     slight: bool = Field(
         description="what is named is next to nothing beside what effects that were added explain: it may be what "

@@ -12,7 +12,6 @@ from bench.study.models.study import Study
 from bench.study.report.model_sections import cell, gain_cell, number, percent
 from bench.study.report.wording import KEYS, condition_text
 from bench.study.suggestion.suggested import Suggested
-from compensator.lab.chance import chance_cell
 
 PICTURES = 3  # of a diagnosis, best effects first
 
@@ -32,7 +31,6 @@ def diagnosis_section(title: str, found: Diagnosis, compared: Comparison) -> Sec
             one.title,
             "yes" if one.in_class else "",
             number(one.score),
-            chance_cell(one.p_value),
             percent(one.held_out_before),
             percent(one.held_out_after),
             gain_cell(one.gain, one.gain_low, one.gain_high),
@@ -46,7 +44,6 @@ def diagnosis_section(title: str, found: Diagnosis, compared: Comparison) -> Sec
         "effect",
         "named",
         "score#",
-        "p#",
         "held out before#",
         "then#",
         "gain, 90 % interval",

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from compensator.lab.errors import EffectFailedError
-from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, EffortQuantity, Facts
+from compensator.lab.recordings.facts import STANDARD_GRAVITY_M_S2, Effort, EffortQuantity, Facts
 from compensator.lab.recordings.recording import SESSION_START, Condition, FloatArray
 from compensator.lab.recordings.reversals import Strokes, since_rest, strokes_of
 
@@ -408,6 +408,11 @@ class Effect:
                     raise EffectFailedError(
                         f"{self.in_full} makes columns that are not all numbers; `channels` has to name what it needs"
                     )
+
+    def shows_in(self, effort: Effort) -> bool:
+        """Whether an effort can hold it; a voltage measured at the motor's terminals holds no supply that sags."""
+        sags = "supply_is_nominal" in self.facts and effort.channels == ("voltage_v",)
+        return not sags and (not self.efforts or effort.quantity in self.efforts)
 
     def ranges_in(self, quantity: EffortQuantity) -> list[tuple[float, float]]:
         """Lowest and highest possible coefficient of each parameter, in a quantity of effort."""

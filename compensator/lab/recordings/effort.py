@@ -8,7 +8,7 @@ from compensator.lab.recordings.facts import Effort, Facts, in_words, lack_of_ef
 from compensator.lab.recordings.recording import Recording
 
 # in order of preference: what is measured closest to the load comes first
-_EFFORTS = (
+EFFORTS = (
     Effort("torque", "joint torque", "N m", ("torque_n_m",)),
     Effort("force", "force", "N", ("force_n",)),
     Effort("current", "measured current", "A", ("current_a",)),
@@ -24,7 +24,7 @@ def choose_effort(recordings: Sequence[Recording], facts: Facts) -> Effort:
     Raises:
         UnusableDataError: no such quantity in some recording; the message names it and the channels needed.
     """
-    wanted = [_known(effort, facts) for effort in _EFFORTS if facts.effort in (None, effort.quantity)]
+    wanted = [_known(effort, facts) for effort in EFFORTS if facts.effort in (None, effort.quantity)]
     for effort in wanted:
         if all(effort.is_measured(recording) for recording in recordings):
             return effort
@@ -35,6 +35,12 @@ def choose_effort(recordings: Sequence[Recording], facts: Facts) -> Effort:
         f"the {len(recordings)} recordings share no effort channel, though each has one; wanted in all of them "
         f"{in_words(wanted)}; choose trials that measure the same"
     )
+
+
+def in_rig(wanted: Sequence[Effort]) -> str:
+    """The channels of efforts, and how a rig asks for one of them."""
+    named = " or ".join(dict.fromkeys(f'"{effort.quantity}"' for effort in wanted))
+    return f"{in_words(wanted)}; if every trial has that, put quantity = {named} under [effort] into rig.toml"
 
 
 def _known(effort: Effort, facts: Facts) -> Effort:

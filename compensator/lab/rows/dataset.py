@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from compensator.lab.effects.effect import Effect, Motion, Shape
 from compensator.lab.errors import NotApplicableError
 from compensator.lab.recordings.differentiation import later, rates_of_change
+from compensator.lab.recordings.effort import EFFORTS, in_rig
 from compensator.lab.recordings.facts import Effort, Facts
 from compensator.lab.recordings.low_pass import low_pass_thinned
 from compensator.lab.recordings.processing import Signals
@@ -495,10 +496,8 @@ class Dataset:
     def _never_shows(self, effect: Effect) -> str:
         """Why trials of this joint and effort cannot show an effect, whatever they hold; empty where they could."""
         effort = self.effort_definition
-        if effect.efforts and effort.quantity not in effect.efforts:
-            return f"does not show in {effort.title}; it does in {', '.join(effect.efforts)}"
-        if "supply_is_nominal" in effect.facts and effort.channels == ("voltage_v",):
-            return "is held by voltage_v, which is measured at the motor's terminals"
+        if not effect.shows_in(effort):
+            return f"does not show in {effort.title}, but in {in_rig([one for one in EFFORTS if effect.shows_in(one)])}"
         if effect.by_angle and self.facts.joint == "linear":
             return (
                 "goes by the angle of an arm, and this joint is linear: what it lifts weighs the same everywhere; add "

@@ -84,7 +84,9 @@ def test_a_voltage_at_the_terminals_holds_the_sag(trials):
     for told in (None, True):
         made = [replace(one, channels=one.channels | {"voltage_v": one.channels["torque_n_m"]}) for one in trials]
         facts = replace(FACTS, supply_is_nominal=told, effort="terminal_voltage")
-        with pytest.raises(NotApplicableError, match="supply_sag is held by voltage_v, which is measured"):
+        with pytest.raises(
+            NotApplicableError, match="does not show in terminal voltage, but in current_estimate_a or duty x supply_v;"
+        ):
             make_dataset(made, facts, Processing()).check_applicable(effect_named("supply_sag"))
 
 

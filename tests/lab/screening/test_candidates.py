@@ -63,6 +63,11 @@ def test_every_effect_that_is_not_in_the_model_is_a_candidate_in_all_its_shapes(
     of_voltages = {name for name, effect in catalogue().items() if effect.efforts and "torque" not in effect.efforts}
     hidden = {"back_driving_friction", "coulomb_asymmetry"}  # in the free scale of gravity, and in the offset
     assert set(gathered.left_out) == {*of_voltages, *hidden, "warm_up", "motor_warm_up", "encoder_eccentricity"}
+    for name in of_voltages:
+        assert "but in current_estimate_a or duty x supply_v" in gathered.left_out[name], "the channels are told"
+        assert gathered.left_out[name].endswith(
+            'put quantity = "current_estimate" or "terminal_voltage" under [effort] into rig.toml'
+        )
     memory = gather(gathered.fit, "moving")
     assert {block.name for block in memory.named} == {n for n, e in catalogue().items() if e.rows == "moving"}
     orders = [block.shape for block in gathered.named if block.name == "position_periodic_friction"]

@@ -4,7 +4,7 @@ import { get } from "../app/api.js";
 import { attempt } from "../ui/attempt.js";
 import { bar } from "./beforeafter.js";
 import { h, replace } from "../ui/dom.js";
-import { capital, chance as chanceIs, interval, nameOf, number, percent, spoken } from "../ui/format.js";
+import { capital, interval, nameOf, number, percent, spoken } from "../ui/format.js";
 import { allShown, milli, titled } from "../ui/units.js";
 import { Chart } from "../plots/chart.js";
 import { momentList } from "./errormap.js";
@@ -104,9 +104,8 @@ const SURE = 6; // d′ from which a name is sure
 
 // the evidence in words, the numbers behind it in brackets
 export function evidence(one) {
-  const chance = one.p_value === null || one.p_value === undefined ? "" : ` Of all that was tried, chance would do as well with p ${chanceIs(one.p_value)}.`;
   const lacks = one.why_not.length ? ` Not named: ${one.why_not.join(", ")}.` : "";
-  return `${gained(one)}${chance}${lacks}${one.confused_with.length ? ` ${alike(one)}` : ""}`;
+  return `${gained(one)}${lacks}${one.confused_with.length ? ` ${alike(one)}` : ""}`;
 }
 
 function gained(one) {

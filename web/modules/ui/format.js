@@ -113,8 +113,3 @@ export function chanceCell(p) {
   if (p === null || p === undefined) return "–";
   return p <= LEAST_P ? `≤ ${LEAST_P}` : number(p, 2);
 }
-
-// behind "p", in a sentence
-export function chance(p) {
-  return p === null || p === undefined || p <= LEAST_P ? chanceCell(p) : `= ${chanceCell(p)}`;
-}

@@ -1,4 +1,4 @@
-"""Dead time of the power stage."""
+"""Dead time of the power stage, and the voltage that brushes take."""
 
 import numpy as np
 
@@ -37,17 +37,18 @@ def _over_uncertain(motion: Motion, shape: Shape) -> FloatArray:
 
 EFFECT = Effect(
     name="dead_time",
-    title="Dead time of the power stage",
+    title="Dead time or brush drop",
     physics=(
-        "For a moment of each PWM period both switches of a leg are off: a voltage is lost against the "
-        "current, whatever its size."
+        "For a moment of each PWM period both switches of a leg are off, and brushes, where there are any, take a volt "
+        "or so: a voltage is lost against the current, whatever its size. A voltage that is measured at the motor's "
+        "terminals holds that of the brushes alone."
     ),
     equation=r"u_d\,\mathrm{sgn}(\hat i)",
     columns=columns,
     parameters=(Parameter("voltage lost, as effort", "{effort}", 0.0),),
     driver="effort",
     excited_by="holds and slow motion at small torque of both signs",
-    source="Jeong, Park 1991",
+    source="dead time: Jeong, Park 1991; brushes: Fitzgerald, Kingsley, Umans 2003",
     shapes=shapes,
     smooth_shape=True,
     shape_names=("share of the largest effort at which its sign is sure",),
