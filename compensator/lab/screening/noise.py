@@ -24,6 +24,7 @@ MODEL_ERROR = 0.03  # share of the variance, white: at no frequency is a model r
 PASSES = 2  # of learning what a fit takes from the noise
 LONGEST = 1000  # steps of a place's grid: what is farther apart than BLOCK_S is independent
 TINY = 1e-30
+ROUNDING = 1e-12  # of a sum of many products, over their largest
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ class Noise:
             if effect.variance > 0.0:
                 found.append(effect)
                 covariances = [(rows, one + effect.covariance(rows)) for rows, one in covariances]
-        roots = tuple((rows, np.linalg.cholesky(one).astype(np.float64)) for rows, one in covariances)
+        roots = tuple((rows, _root(one)) for rows, one in covariances)
         return cls(roots, max(dataset.stretches(rows) - 1, 1), tuple(found))
 
     @property
@@ -127,6 +128,12 @@ class Noise:
         for rows, root in self.roots:
             found[rows] = root @ values[rows]
         return found
+
+
+def _root(covariance: FloatArray) -> FloatArray:
+    """Cholesky's of a covariance (n, n): where there is no noise, rounding of a random effect leaves it indefinite."""
+    white = ROUNDING * float(np.mean(np.diag(covariance)))
+    return np.linalg.cholesky(covariance + white * np.eye(len(covariance))).astype(np.float64)
 
 
 def _coloured(dataset: Dataset, rows: BoolArray, fitted: Base) -> list[tuple[slice, FloatArray]]:

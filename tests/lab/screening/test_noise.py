@@ -120,6 +120,13 @@ def test_rows_that_see_less_of_the_noise_are_white_as_all_others_are():
     assert powers[1][0] < 0.6
 
 
+def test_where_nothing_is_left_but_rounding_rows_are_whitened_all_the_same():
+    """As of two logs of one run without noise: a random effect is there as far as nobody can know."""
+    residual = 1e-16 * coloured(np.random.default_rng(12))
+    noise = Noise.learnt(dataset(STEADY), ALL, Base(NOTHING, residual), [from_stop_to_stop()])
+    assert np.isfinite(noise.whitened(residual[:, None])).all()
+
+
 def test_rows_left_out_count_for_nothing():
     random = np.random.default_rng(2)
     rows = random.random(len(ALL)) < 0.6
