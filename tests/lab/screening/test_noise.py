@@ -107,9 +107,9 @@ def test_whitened_noise_is_white_and_comes_back():
 def test_rows_that_see_less_of_the_noise_are_white_as_all_others_are():
     """Near the ends of a stroke: taken for as noisy as the others, they would seem to be too quiet, these too noisy."""
     random = np.random.default_rng(11)
-    beside_stop = np.arange(ROWS) % STROKE >= STROKE - 6
+    beside_stop = np.arange(ROWS) % STROKE >= STROKE // 2
     seen = np.where(beside_stop, 0.5, 1.0)
-    residual = np.tile(seen, TRIALS) * coloured(random)
+    residual = np.tile(seen, TRIALS) * coloured(random, 0.3)
     there = np.tile(beside_stop, TRIALS)
     powers = []
     for told in (seen, 1.0):
