@@ -26,7 +26,7 @@ from compensator.lab.recordings.plain_columns import (
     stacked,
 )
 from compensator.lab.recordings.position_noise import SEGMENT_S
-from compensator.lab.recordings.processing import lowest_cutoff_hz, make_signals, sample_rate_hz
+from compensator.lab.recordings.processing import EvenSamples, Signals, even_samples, lowest_cutoff_hz, sample_rate_hz
 from compensator.lab.recordings.recording import Recording
 
 COHERENT = 0.5  # of the highest coherence further down
@@ -51,7 +51,7 @@ def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Fac
     recording is left between the edges of the filter; within 2 Hz and a fifth of the sample rate.
 
     Raises:
-        UnusableDataError: a recording with fewer than four samples a second, or one that `make_signals` refuses.
+        UnusableDataError: a recording with fewer than four samples a second, too short, or refused by `even_samples`.
     """
     slowest_hz, slowest = min((sample_rate_hz(r), r.name) for r in recordings)
     if slowest_hz < 2.0 * LOWEST_HZ:
@@ -62,9 +62,10 @@ def choose_cutoff_hz(recordings: Sequence[Recording], effort: Effort, facts: Fac
     some = recordings[:: -(-len(recordings) // MOST_RECORDINGS)]
     highest_hz = HIGHEST_SHARE * slowest_hz
     some = long_enough(some, highest_hz) or some  # all, if none is, for the error to be raised
-    motion_hz = motion_bandwidth_hz(some, effort, facts, highest_hz)
-    by_position_hz = position_noise_corner_hz(some, effort, facts, max(motion_hz, LOWEST_HZ))
-    by_motion_hz = noise_corner_hz(some, effort, facts, min(HARMONICS * motion_hz, by_position_hz, highest_hz))
+    even = [even_samples(one, effort, facts) for one in some]
+    motion_hz = motion_bandwidth_hz(even, highest_hz)
+    by_position_hz = position_noise_corner_hz(even, max(motion_hz, LOWEST_HZ))
+    by_motion_hz = noise_corner_hz(even, min(HARMONICS * motion_hz, by_position_hz, highest_hz))
     by_place_hz = min(PASSED * place_locked_hz(some, effort, facts), highest_hz)
     by_length_hz = min(2.0 * min(map(lowest_cutoff_hz, recordings)), highest_hz)
     return max(by_motion_hz, by_place_hz, by_length_hz, LOWEST_HZ)
@@ -86,12 +87,12 @@ def check_cutoff(cutoff_hz: float, recordings: Sequence[Recording]) -> None:
         )
 
 
-def motion_bandwidth_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, highest_hz: float) -> float:
+def motion_bandwidth_hz(recordings: Sequence[EvenSamples], highest_hz: float) -> float:
     """The frequency below which lies 99 % of the velocity's power, noise taken off, over all recordings [Hz]."""
     frequencies = np.linspace(0.0, 3.0 * highest_hz, 1024)
     power = np.zeros(len(frequencies))
     for recording in recordings:
-        signals = make_signals(recording, effort, facts, highest_hz)
+        signals = recording.filtered(highest_hz)
         segment = min(len(signals.velocity), int(SEGMENT_S * signals.rate_hz))
         at, density = welch(signals.velocity, signals.rate_hz, nperseg=segment)
         noise = signals.position_noise * (2.0 * np.pi * at) ** 2
@@ -100,19 +101,17 @@ def motion_bandwidth_hz(recordings: Sequence[Recording], effort: Effort, facts: 
     return float(frequencies[min(int(np.searchsorted(share, MOTION_SHARE)), len(frequencies) - 1)])
 
 
-def position_noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, motion_hz: float) -> float:
+def position_noise_corner_hz(recordings: Sequence[EvenSamples], motion_hz: float) -> float:
     """Up to where noise of the position, as inertia makes it effort, comes to MOST_NOISE of the effort [Hz].
 
     Args:
         recordings: of the joint.
-        effort: which quantity.
-        facts: of the joint.
         motion_hz: bandwidth of the motion, which tells the inertia; the corner is not below.
 
     Returns:
         The corner; infinite where the position has no noise, or no inertia is seen.
     """
-    signals = [make_signals(one, effort, facts, motion_hz) for one in long_enough(recordings, motion_hz)]
+    signals = _filtered(recordings, motion_hz)
     if not signals:
         return np.inf
     columns, measured, _ = stacked(signals, STEADY_HZ, motion_hz)
@@ -128,14 +127,14 @@ def position_noise_corner_hz(recordings: Sequence[Recording], effort: Effort, fa
     return max(float(corner_hz), motion_hz)
 
 
-def noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Facts, highest_hz: float) -> float:
+def noise_corner_hz(recordings: Sequence[EvenSamples], highest_hz: float) -> float:
     """The frequency above which the motion explains less than half as much of the effort's power as below it [Hz]."""
     most, known_to_hz = 0.0, LOWEST_HZ
     edges = LOWEST_HZ * 2.0 ** (np.arange(64) / BANDS_PER_OCTAVE)
     # the last band takes in what is left: a sliver would hold too few values
     edges = np.append(edges[edges < 2.0 ** (-0.5 / BANDS_PER_OCTAVE) * highest_hz], max(highest_hz, LOWEST_HZ))
     for low, high in pairwise(edges.tolist()):
-        signals = [make_signals(one, effort, facts, high) for one in long_enough(recordings, high)]
+        signals = _filtered(recordings, high)
         if not signals:
             continue
         share = explained_share(signals, low, high)
@@ -143,3 +142,8 @@ def noise_corner_hz(recordings: Sequence[Recording], effort: Effort, facts: Fact
             return known_to_hz
         most, known_to_hz = max(most, share), high
     return known_to_hz
+
+
+def _filtered(recordings: Sequence[EvenSamples], cutoff_hz: float) -> list[Signals]:
+    """Those that are long enough."""
+    return [one.filtered(cutoff_hz) for one in recordings if lowest_cutoff_hz(one.recording) <= cutoff_hz]

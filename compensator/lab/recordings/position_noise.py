@@ -11,6 +11,8 @@ Wiener's gain, 1 - N / S, with the density S of what was measured and N of its n
 time: the noise grows with the speed, and a joint at a steady speed has no acceleration to show.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.ndimage import uniform_filter
 from scipy.signal import ShortTimeFFT, welch
@@ -26,33 +28,42 @@ STEPS = 4  # from a window to the next
 NEIGHBOURS = 3  # frequencies and windows, over which a density is averaged: a single value scatters by itself
 
 
-def position_noise(position: FloatArray, mixed: float, rate_hz: float) -> float:
-    """Density of the noise of a position, in its unit squared per Hz: that of its highest frequencies.
+@dataclass(frozen=True, slots=True)
+class PositionNoise:
+    """Noise of one recorded position.
+
+    Attributes:
+        density: that of its highest frequencies, in its unit squared per Hz.
+        windows: a second each, over which gains are found; None for a position that is shorter.
+        gains: Wiener's, by frequency and window, shape (m, w).
+        kept: a draw of what noise these gains leave in the acceleration, shape (n,).
+    """
+
+    density: float
+    windows: ShortTimeFFT | None
+    gains: FloatArray
+    kept: FloatArray
+
+    def removed_from(self, acceleration: FloatArray) -> FloatArray:
+        """The acceleration (n,) as it is expected of a position with noise, after some low-pass."""
+        if self.windows is None:
+            return acceleration
+        found: FloatArray = self.windows.istft(self.gains * self.windows.stft(acceleration), k1=len(acceleration))
+        return found
+
+
+def position_noise(position: FloatArray, mixed: float, rate_hz: float) -> PositionNoise:
+    """Noise of a position, by what it has where a motion has nothing.
 
     Args:
-        position: at a uniform rate, shape (n,).
+        position: at a uniform rate, shape (n,), before any filter.
         mixed: by the interpolation that made it; see `mixed_by_interpolation`.
         rate_hz: of the samples.
     """
-    at_hz, density = welch(position, rate_hz, nperseg=min(len(position), max(int(SEGMENT_S * rate_hz), 1)))
-    above = at_hz > NOISE_ONLY * 0.5 * rate_hz
-    return float(np.mean(density[above] / _passed(at_hz[above] / rate_hz, mixed))) if above.any() else 0.0
-
-
-def without_noise(
-    acceleration: FloatArray, position: FloatArray, mixed: float, rate_hz: float
-) -> tuple[FloatArray, FloatArray]:
-    """The acceleration (n,) as it is expected of a position with noise, and a draw of the noise that it keeps.
-
-    Args:
-        acceleration: of the position after some low-pass.
-        position: before it, shape (n,).
-        mixed: by the interpolation that made it; see `mixed_by_interpolation`.
-        rate_hz: of the samples.
-    """
+    density = _density(position, mixed, rate_hz)
     samples = max(int(WINDOW_S * rate_hz), FEWEST_SAMPLES)
     if len(position) < samples:
-        return acceleration, np.zeros(len(acceleration))
+        return PositionNoise(density, None, np.empty((0, 0)), np.zeros(len(position)))
     window = hann(samples, sym=False)
     windows = ShortTimeFFT(window, samples // STEPS, rate_hz)
     # of second differences: large slow motion would leak from the window's low frequencies into all others; 0 at both
@@ -62,13 +73,12 @@ def without_noise(
     white = (2.0 * np.sin(np.pi * per_sample)) ** 4 * _passed(per_sample, mixed)
     above = per_sample > 0.5 * NOISE_ONLY
     power = np.mean(measured[above] / white[above, None], axis=0)
-    density = uniform_filter(measured, NEIGHBOURS)
-    gain = np.clip(1.0 - power * white[:, None] / np.maximum(density, np.finfo(float).tiny), 0.0, 1.0)
-    found: FloatArray = windows.istft(gain * windows.stft(acceleration), k1=len(acceleration))
+    around = uniform_filter(measured, NEIGHBOURS)
+    gains = np.clip(1.0 - power * white[:, None] / np.maximum(around, np.finfo(float).tiny), 0.0, 1.0)
     drawn = np.random.default_rng(len(position)).standard_normal(len(position) + 2)
     scale = rate_hz**2 * np.sqrt(power / float(window @ window))
-    noise: FloatArray = windows.istft(gain * scale * windows.stft(np.diff(drawn, 2)), k1=len(acceleration))
-    return found, noise
+    kept: FloatArray = windows.istft(gains * scale * windows.stft(np.diff(drawn, 2)), k1=len(position))
+    return PositionNoise(density, windows, gains, kept)
 
 
 def mixed_by_interpolation(even: FloatArray, time_s: FloatArray) -> float:
@@ -81,6 +91,12 @@ def mixed_by_interpolation(even: FloatArray, time_s: FloatArray) -> float:
     after = np.clip(np.searchsorted(time_s, even), 1, len(time_s) - 1)
     weight = np.clip((even - time_s[after - 1]) / (time_s[after] - time_s[after - 1]), 0.0, 1.0)
     return float(np.mean(weight * (1.0 - weight)))
+
+
+def _density(position: FloatArray, mixed: float, rate_hz: float) -> float:
+    at_hz, density = welch(position, rate_hz, nperseg=min(len(position), max(int(SEGMENT_S * rate_hz), 1)))
+    above = at_hz > NOISE_ONLY * 0.5 * rate_hz
+    return float(np.mean(density[above] / _passed(at_hz[above] / rate_hz, mixed))) if above.any() else 0.0
 
 
 def _passed(per_sample: FloatArray, mixed: float) -> FloatArray:

@@ -15,7 +15,7 @@ from compensator.lab.recordings.driven import driven_from_outside
 from compensator.lab.recordings.facts import Effort, Facts, lack_of_effort
 from compensator.lab.recordings.gaps import is_before_gap, typical_step_s
 from compensator.lab.recordings.low_pass import FILTER_ORDER, low_pass
-from compensator.lab.recordings.position_noise import mixed_by_interpolation, position_noise, without_noise
+from compensator.lab.recordings.position_noise import PositionNoise, mixed_by_interpolation, position_noise
 from compensator.lab.recordings.recording import BoolArray, FloatArray, Recording
 
 DIFFERENTIATION_FACTOR = 3.0  # differentiation cut-off / final cut-off; below 3 a false elasticity appears
@@ -57,6 +57,62 @@ class Signals:
     usable: BoolArray
 
 
+@dataclass(frozen=True, slots=True)
+class EvenSamples:
+    """One recording on a uniform time grid, before any filter; arrays have shape (n,), raw ones that of the recording.
+
+    Attributes:
+        recording: where they come from.
+        time_s: uniform.
+        rate_hz: of the grid.
+        position: on the grid.
+        noise: of the position.
+        raw_position, raw_effort: as recorded.
+    """
+
+    recording: Recording
+    time_s: FloatArray
+    rate_hz: float
+    position: FloatArray
+    noise: PositionNoise
+    raw_position: FloatArray
+    raw_effort: FloatArray
+
+    def filtered(self, cutoff_hz: float) -> Signals:
+        """Filter and differentiate.
+
+        Raises:
+            UnusableDataError: too short for the filter.
+        """
+        recording, time, rate_hz = self.recording, self.time_s, self.rate_hz
+        shortest = shortest_samples(rate_hz, cutoff_hz)
+        if len(time) < shortest:
+            raise UnusableDataError(
+                f"recording '{recording.name}' has {len(time)} samples; at least {shortest} are needed "
+                f"to filter at {cutoff_hz:.3g} Hz; record longer, choose a higher cut-off, or leave the trial out"
+            )
+        wide_hz = DIFFERENTIATION_FACTOR * cutoff_hz
+        position = low_pass(self.position, wide_hz, rate_hz)
+        velocity = rate_of_change(position, rate_hz)
+        acceleration = self.noise.removed_from(rate_of_change(velocity, rate_hz))
+        return Signals(
+            recording=recording,
+            time_s=time,
+            rate_hz=rate_hz,
+            position=position,
+            velocity=velocity,
+            acceleration=acceleration,
+            jerk=rate_of_change(acceleration, rate_hz),
+            position_noise=self.noise.density,
+            acceleration_noise=low_pass(self.noise.kept, wide_hz, rate_hz),
+            effort=_resample(time, recording.channels["time_s"], self.raw_effort),
+            temperature_c=_optional(recording, "temperature_c", time),
+            supply_v=_optional(recording, "supply_v", time),
+            load=_optional(recording, "load_torque_n_m", time),
+            usable=_usable(self, cutoff_hz),
+        )
+
+
 def sample_rate_hz(recording: Recording) -> float:
     """Rate of a recording, by its typical step.
 
@@ -89,51 +145,35 @@ def make_signals(recording: Recording, effort: Effort, facts: Facts, cutoff_hz: 
     Raises:
         UnusableDataError: no position, no effort, or too short for the filter.
     """
-    raw_time = recording.channels["time_s"]
+    return even_samples(recording, effort, facts).filtered(cutoff_hz)
+
+
+def even_samples(recording: Recording, effort: Effort, facts: Facts) -> EvenSamples:
+    """Resample one recording.
+
+    Raises:
+        UnusableDataError: no position, no effort.
+    """
     position_name = f"position_{facts.position_unit}"
     if position_name not in recording.channels:
         raise UnusableDataError(
             f"recording '{recording.name}': channel {position_name} is missing, found "
             f"{', '.join(sorted(recording.channels))}; a {facts.joint} joint needs its position"
         )
-    if not np.isfinite(recording.channels[position_name]).any():
+    raw_position = recording.channels[position_name]
+    if not np.isfinite(raw_position).any():
         raise UnusableDataError(
             f"recording '{recording.name}': {position_name} has no finite sample; leave the trial out"
         )
     if lack := lack_of_effort(recording, [effort]):
         raise UnusableDataError(lack)
-    rate = sample_rate_hz(recording)
-    period = 1.0 / rate
-    time = _uniform(raw_time, period)
-    shortest = shortest_samples(rate, cutoff_hz)
-    if len(time) < shortest:
-        raise UnusableDataError(
-            f"recording '{recording.name}' has {len(time)} samples; at least {shortest} are needed "
-            f"to filter at {cutoff_hz:.3g} Hz; record longer, choose a higher cut-off, or leave the trial out"
-        )
-    raw_position = recording.channels[position_name]
-    even_position = _resample(time, raw_time, raw_position)
-    position = low_pass(even_position, DIFFERENTIATION_FACTOR * cutoff_hz, rate)
-    velocity = rate_of_change(position, rate)
+    rate_hz = sample_rate_hz(recording)
+    raw_time = recording.channels["time_s"]
+    time = _uniform(raw_time, 1.0 / rate_hz)
+    position = _resample(time, raw_time, raw_position)
     mixed = mixed_by_interpolation(time, raw_time[np.isfinite(raw_position)])
-    acceleration, noise = without_noise(rate_of_change(velocity, rate), even_position, mixed, rate)
-    raw_effort = effort.of(recording)
-    return Signals(
-        recording=recording,
-        time_s=time,
-        rate_hz=rate,
-        position=position,
-        velocity=velocity,
-        acceleration=acceleration,
-        jerk=rate_of_change(acceleration, rate),
-        position_noise=position_noise(even_position, mixed, rate),
-        acceleration_noise=low_pass(noise, DIFFERENTIATION_FACTOR * cutoff_hz, rate),
-        effort=_resample(time, raw_time, raw_effort),
-        temperature_c=_optional(recording, "temperature_c", time),
-        supply_v=_optional(recording, "supply_v", time),
-        load=_optional(recording, "load_torque_n_m", time),
-        usable=_usable(recording, raw_time, raw_position, raw_effort, time, cutoff_hz),
-    )
+    noise = position_noise(position, mixed, rate_hz)
+    return EvenSamples(recording, time, rate_hz, position, noise, raw_position, effort.of(recording))
 
 
 def _uniform(raw_time: FloatArray, period: float) -> FloatArray:
@@ -156,21 +196,15 @@ def _optional(recording: Recording, name: str, time: FloatArray) -> FloatArray:
     return _resample(time, recording.channels["time_s"], recording.channels[name])
 
 
-def _usable(
-    recording: Recording,
-    raw_time: FloatArray,
-    position: FloatArray,
-    effort: FloatArray,
-    time: FloatArray,
-    cutoff_hz: float,
-) -> BoolArray:
+def _usable(samples: EvenSamples, cutoff_hz: float) -> BoolArray:
     """Rows whose position and effort were measured in closed loop, away from gaps, saturation and ends."""
-    good: BoolArray = np.isfinite(position) & np.isfinite(effort)
+    recording, time, raw_time = samples.recording, samples.time_s, samples.recording.channels["time_s"]
+    good: BoolArray = np.isfinite(samples.raw_position) & np.isfinite(samples.raw_effort)
     if "enabled" in recording.channels:
         good &= recording.channels["enabled"] > 0.5
     if "duty" in recording.channels:
         good &= ~(np.abs(recording.channels["duty"]) >= SATURATED_DUTY)
-    good &= ~driven_from_outside(raw_time, position, effort)
+    good &= ~driven_from_outside(raw_time, samples.raw_position, samples.raw_effort)
     before_gap = is_before_gap(raw_time)
     after_gap = np.roll(before_gap, 1)
     in_gap = before_gap[np.searchsorted(raw_time, time, side="right") - 1]

@@ -7,7 +7,7 @@ from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
 from compensator.lab.recordings.effort import choose_effort
 from compensator.lab.recordings.low_pass import low_pass
-from compensator.lab.recordings.position_noise import without_noise
+from compensator.lab.recordings.position_noise import position_noise
 from compensator.lab.recordings.processing import make_signals
 from compensator.lab.rows.assembly import make_dataset
 from compensator.lab.rows.dataset import Processing
@@ -88,7 +88,8 @@ def test_an_acceleration_keeps_its_motion_and_loses_noise_where_there_is_only_no
     position = np.where(time_s < 6.0, np.sin(2.0 * np.pi * 3.0 * time_s), 2.0 * (time_s - 6.0))
     noisy = position + 1e-4 * np.random.default_rng(3).standard_normal(len(time_s))
     exact, measured = accelerated(position), accelerated(noisy)
-    found, drawn = without_noise(measured, noisy, 0.0, RATE_HZ)
+    noise = position_noise(noisy, 0.0, RATE_HZ)
+    found, drawn = noise.removed_from(measured), noise.kept
     assert rms(found[steady] - exact[steady]) < 0.4 * rms(measured[steady] - exact[steady])
     assert rms(found[quick] - exact[quick]) < 0.45 * rms(measured[quick] - exact[quick])
     # where the motion is, at 3 Hz, what is left of the noise has the size of what was drawn
@@ -102,9 +103,8 @@ def test_an_acceleration_without_noise_stays_as_it_is():
     position = np.sin(2.0 * np.pi * 1.5 * time_s) + 0.3 * np.sin(2.0 * np.pi * 4.0 * time_s)
     exact = accelerated(position)
     inside = slice(20, -20)
-    assert without_noise(exact, position, 0.0, RATE_HZ)[0][inside] == pytest.approx(
-        exact[inside], abs=1e-3 * rms(exact)
-    )
+    found = position_noise(position, 0.0, RATE_HZ).removed_from(exact)
+    assert found[inside] == pytest.approx(exact[inside], abs=1e-3 * rms(exact))
 
 
 def rms(values):
