@@ -1,6 +1,6 @@
 """The commissioning move finds wrong signs and scales; without its pass a real drive runs nothing."""
 
-from math import nan
+from math import nan, pi, sin
 
 import pytest
 
@@ -255,6 +255,55 @@ def test_the_sign_of_the_current_is_seen_by_friction(sign, passed):
     assert found["current"].passed is passed, found["current"].sentence
     assert found["velocity"].passed
     assert found["ratio"].passed is None
+
+
+# four rows of a drive that follows each set point of a profile to a stop; speed [rad/s] and current [A]
+STOP_AND_GO = ((0.06, 0.67), (0.46, 0.16), (0.52, -0.46), (0.15, -0.12))
+
+
+def stop_and_go(direction, sign=1.0, friction_a=0.0, offset=0):
+    """A move by hand that speeds up and brakes again and again: it brakes while it is fast."""
+    made, position_rad = [], 0.0
+    for cycle in range(60):
+        speed_rad_s, current_a = STOP_AND_GO[(cycle + offset) % 4]
+        velocity_rad_s, current_a = direction * speed_rad_s, sign * direction * (current_a + friction_a)
+        position_rad += velocity_rad_s * PERIOD_S
+        sample = Sample(cycle * PERIOD_S, 0.0, position_rad, nan, nan, current_a, nan, nan, Status.ENABLED)
+        made.append(Reading(sample.time_s, sample, velocity_rad_s, current_a))
+    return Push(direction, made, [])
+
+
+@pytest.mark.parametrize("offset", range(4))
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_drive_that_stops_at_every_set_point_is_not_accused(sign, offset):
+    pushes = [stop_and_go(direction, sign, offset=offset) for direction in (1, -1)]
+    found = {one.name: one for one in position_findings(pushes, RIG)}
+    assert found["current"].passed is None, found["current"].sentence
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_friction_that_is_large_enough_shows_all_the_same(sign):
+    pushes = [stop_and_go(direction, sign, friction_a=0.4) for direction in (1, -1)]
+    found = {one.name: one for one in position_findings(pushes, RIG)}
+    assert found["current"].passed is (sign > 0.0), found["current"].sentence
+
+
+def swaying(direction, sign, phase):
+    """A move at one speed with a slow oscillation of the current, far above its friction."""
+    current_a = [0.02 * direction + 0.3 * sin(2.0 * pi * cycle / 70.0 + phase) for cycle in range(50)]
+    made = []
+    for cycle, one_a in enumerate(current_a):
+        position_rad = direction * 0.003 * cycle
+        sample = Sample(cycle * PERIOD_S, 0.0, position_rad, nan, nan, sign * one_a, nan, nan, Status.ENABLED)
+        made.append(Reading(sample.time_s, sample, direction * 0.3, sign * one_a))
+    return Push(direction, made, [])
+
+
+@pytest.mark.parametrize("phase", [eighth * pi / 4 for eighth in range(8)])
+def test_an_oscillation_of_the_current_is_no_friction(phase):
+    pushes = [swaying(1, 1.0, phase), swaying(-1, 1.0, phase + pi)]
+    found = {one.name: one for one in position_findings(pushes, RIG)}
+    assert found["current"].passed is None, found["current"].sentence
 
 
 def test_a_new_zero_does_not_ask_for_the_move_again():

@@ -71,14 +71,16 @@ def _sign_unseen(pushes: Sequence[Push]) -> Finding:
 
 
 def check_friction(pushes: Sequence[Push]) -> Finding:
-    """There and back over one way: the measured currents differ by friction, which has the sign of the motion."""
-    there_a, back_a = (column(_moving(push.driven), "current_a") for push in pushes)
+    """There and back over one way: the measured currents differ by friction, which has the sign of the motion.
+
+    What speeds the joint up has slowed it down by the end: only over the whole passage does it cancel.
+    """
+    there_a, back_a = (column(_passage(push.driven), "current_a") for push in pushes)
     if np.isnan([*there_a, *back_a]).any():
         return Finding("current", None, "the drive measures no current; it is estimated by the paper's eq. (3)")
     means = float(np.mean(there_a)), float(np.mean(back_a))
     text = f"measured current: {means[0]:+.3g} A on the way there, {means[1]:+.3g} A on the way back"
-    noise_a = float(np.hypot(np.std(there_a) / np.sqrt(len(there_a)), np.std(back_a) / np.sqrt(len(back_a))))
-    if abs(means[0] - means[1]) <= SEEN_SIGMAS * noise_a:
+    if abs(means[0] - means[1]) <= SEEN_SIGMAS * np.hypot(_error_of_mean(there_a), _error_of_mean(back_a)):
         return Finding("current", None, f"not checked: {text}; friction does not show in it")
     if means[0] > means[1]:
         return Finding("current", True, text)
@@ -156,10 +158,26 @@ def check_ratio(pushes: Sequence[Push], rig: Rig) -> Finding:
     )  # fmt: skip
 
 
-def _moving(readings: Sequence[Reading]) -> list[Reading]:
-    """Those of the way itself, without the wait at its ends."""
+def _passage(readings: Sequence[Reading]) -> Sequence[Reading]:
+    """The way itself, without the wait at its ends; with every stop between."""
     fastest_rad_s = max(abs(reading.velocity_rad_s) for reading in readings)
-    return [reading for reading in readings if abs(reading.velocity_rad_s) >= MOVING_SHARE * fastest_rad_s]
+    moving = [n for n, one in enumerate(readings) if abs(one.velocity_rad_s) >= MOVING_SHARE * fastest_rad_s]
+    return readings[moving[0] : moving[-1] + 1]
+
+
+def _error_of_mean(values: FloatArray) -> float:
+    """Standard error of a mean of rows in time: those alike count as one, and those that alternate as no more."""
+    off = values - np.mean(values)
+    power = float(off @ off)
+    if power == 0.0:
+        return 0.0
+    alike = 1.0  # rows that count as one: twice the autocorrelation, until it is none
+    for lag in range(1, len(off)):
+        correlation = float(off[:-lag] @ off[lag:]) / power
+        if correlation <= 0.0:
+            break
+        alike += 2.0 * correlation
+    return float(np.sqrt(power * alike)) / len(off)
 
 
 def column(readings: Sequence[Reading], name: str) -> FloatArray:
