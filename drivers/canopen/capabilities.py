@@ -56,7 +56,10 @@ def probe(table: ObjectTable, settings: CanopenSettings, joint: JointScale, iden
     Raises:
         DriveConfigurationError: the drive's units contradict rig or settings.
     """
-    profile = choose_profile(settings.device, settings.profile, identity.vendor_id)
+    profile, why = choose_profile(
+        settings.device, settings.profile, identity.vendor_id, lambda item: table.has(item, _MEASURED)
+    )
+    table.note("object profile", Need.REQUIRED, "identity", True, f"{profile.name}: {why}; profile in [drive] sets another")
     units = read_units(table, settings, joint.counts_per_turn)
     rated_a = _rated_current_a(table, settings, profile)
     scale = DriveScale(joint, rated_a, units.velocity_rad_s, units.acceleration_rad_s2)

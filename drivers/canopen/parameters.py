@@ -13,7 +13,9 @@ class CanopenParameters(Settings):
     """One CANopen drive, wherever it is."""
 
     node_id: int = quantity(..., "", "Node ID of the drive", ge=1, le=127)
-    profile: Literal["auto", "cia402", "epos4"] = quantity("auto", "", "Object profile; 'auto': by the vendor ID")
+    profile: Literal["auto", "cia402", "epos4"] = quantity(
+        "auto", "", "Object profile; 'auto': by the vendor ID and by the objects that the drive has"
+    )
     position_mode: PositionMode = quantity(
         "auto",
         "",

@@ -1,5 +1,6 @@
 """Where each family of drives keeps what CiA 402 leaves open: data, not branches."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from drivers.canopen.cia301.objects import RATED_CURRENT, DataType, DriveObject
@@ -61,14 +62,32 @@ EPOS4 = ObjectProfile(
 PROFILES = {profile.name: profile for profile in (CIA402, EPOS4)}
 
 
-def choose_profile(device: str, wanted: str, vendor_id: int) -> ObjectProfile:
-    """The profile that the settings name, or with "auto" the one of the vendor.
+def choose_profile(
+    device: str, wanted: str, vendor_id: int, has: Callable[[DriveObject], bool]
+) -> tuple[ObjectProfile, str]:
+    """The profile that the settings name, or with "auto" the one of the vendor whose object for the current is there.
+
+    One vendor has families that share few objects: an EPOS2 tells its current by CiA 402, an EPOS4 does not.
+
+    Args:
+        device: name in messages.
+        wanted: name of a profile, or "auto".
+        vendor_id: 0x1018:01.
+        has: whether the drive has an object.
+
+    Returns:
+        The profile, and why it is that one.
 
     Raises:
         DriveConfigurationError: the named profile belongs to another vendor.
     """
     if wanted == "auto":
-        return next((profile for profile in PROFILES.values() if profile.vendor_id == vendor_id), CIA402)
+        of_vendor = [profile for profile in PROFILES.values() if profile.vendor_id == vendor_id]
+        found = next((profile for profile in of_vendor if has(profile.current)), None)
+        if found is not None:
+            return found, f"it is of vendor 0x{vendor_id:X} and has {found.current}"
+        lacks = "".join(f"; it is no {profile.name}, for it has no {profile.current}" for profile in of_vendor)
+        return CIA402, f"the objects of CiA 402 itself{lacks}"
     profile = PROFILES[wanted]
     if profile.vendor_id not in (None, vendor_id):
         raise DriveConfigurationError(
@@ -76,4 +95,4 @@ def choose_profile(device: str, wanted: str, vendor_id: int) -> ObjectProfile:
             f"vendor ID is 0x{vendor_id:X}; profile '{wanted}' is for 0x{profile.vendor_id:X}. "
             'Set profile = "auto" or "cia402"',
         )
-    return profile
+    return profile, "the configuration says so"

@@ -194,6 +194,26 @@ def test_an_epos4_is_known_by_its_vendor(node, drive_of):
     _await(lambda: node.get(0x6071) == 250)  # of 100 mN m / 50 mN m/A = 2 A
 
 
+def test_a_drive_of_maxon_without_the_objects_of_an_epos4_is_none(node, drive_of):
+    node.put(0x1018, 1, 0xFB)
+    drive = drive_of()
+    drive.open(0.005)
+    assert {"current_a", "supply_v"} <= drive.describe().measured
+    row = next(row for row in drive.objects if row.object == "object profile")
+    assert row.outcome == (
+        "cia402: the objects of CiA 402 itself; it is no epos4, for it has no current actual value (0x30D1:02); "
+        "profile in [drive] sets another"
+    )
+
+
+def test_the_profile_that_is_named_is_used(node, drive_of):
+    node.put(0x1018, 1, 0xFB)
+    drive = drive_of(profile="epos4")
+    drive.open(0.005)
+    assert "supply_v" not in drive.describe().measured
+    assert any("epos4: the configuration says so" in row.outcome for row in drive.objects)
+
+
 def test_the_supply_is_asked_for_between_the_cycles(node, drive_of):
     drive = drive_of(poll_hz=20.0)
     drive.open(0.005)
