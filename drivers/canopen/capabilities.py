@@ -1,7 +1,7 @@
 """What the drive can do and measure, found by asking it: absent is NaN, and is said."""
 
 from dataclasses import dataclass
-from math import nan
+from math import isnan, nan
 
 from drivers.canopen.cia301.object_table import Need, ObjectTable
 from drivers.canopen.cia301.objects import RATED_TORQUE, TORQUE, TORQUE_OFFSET, VELOCITY, VELOCITY_OFFSET, DriveObject
@@ -12,7 +12,7 @@ from drivers.canopen.cia402.profiles import ObjectProfile, choose_profile
 from drivers.canopen.cia402.scale import DriveScale
 from drivers.canopen.meeting import Identity
 from drivers.canopen.settings import CanopenSettings
-from drivers.contract import Mode, Untold
+from drivers.contract import Mode
 from drivers.joint import JointScale
 
 _MEASURED = "measured"
@@ -25,12 +25,13 @@ class Capabilities:
 
     Attributes:
         present: optional objects that it has.
-        currents: the objects that tell the motor current, the best first; not each can be put into a PDO.
+        currents: the objects that tell the motor current, the best first; not each can be put into a PDO, and of one
+            that is relative nobody may know to what.
         modes: the code of 0x6060 for each mode.
         units: by the drive and by the configuration.
         told_counts: encoder counts of a motor turn, by the drive; NaN where it tells none.
         no_homing: why it does not home by itself; "" where it does.
-        untold: what is to be set for want of the rated current; None where that is known, or would not help.
+        lacks_rated_current: a torque mode is there, and only its unit keeps it from being used.
     """
 
     identity: Identity
@@ -42,7 +43,7 @@ class Capabilities:
     units: tuple[UnitRow, ...]
     told_counts: float
     no_homing: str
-    untold: Untold | None
+    lacks_rated_current: bool
 
     @property
     def current(self) -> DriveObject | None:
@@ -59,56 +60,44 @@ def probe(table: ObjectTable, settings: CanopenSettings, joint: JointScale, iden
     profile, why = choose_profile(
         settings.device, settings.profile, identity.vendor_id, lambda item: table.has(item, _MEASURED)
     )
-    table.note("object profile", Need.REQUIRED, "identity", True, f"{profile.name}: {why}; profile in [drive] sets another")
+    chosen = f"{profile.name}: {why}; profile in [drive] sets another"
+    table.note("object profile", Need.REQUIRED, "identity", True, chosen)
     units = read_units(table, settings, joint.counts_per_turn)
-    rated_a = _rated_current_a(table, settings, profile)
-    scale = DriveScale(joint, rated_a, units.velocity_rad_s, units.acceleration_rad_s2)
+    rated = _rated_current(table, settings, profile)
+    scale = DriveScale(joint, rated.configuration, units.velocity_rad_s, units.acceleration_rad_s2)
     measured = (profile.current, profile.duty, profile.supply, profile.temperature, TORQUE, VELOCITY)
     asked = [*(item for item in measured if item is not None), TORQUE_OFFSET, VELOCITY_OFFSET]
     present = frozenset(item for item in asked if table.has(item, _MEASURED))
-    currents = tuple(item for item in (profile.current, TORQUE) if item in present and scale.tells(item))
-    rows = (*units.rows, UnitRow("motor current of 1000 permille torque in A", _told(table, profile), rated_a))
+    there = (item for item in (profile.current, TORQUE) if item in present)
+    currents = tuple(sorted(there, key=lambda item: not scale.tells(item)))
     choice = ModeChoice(table, settings, scale)
     modes = choice.choose()
-    tells = not currents and any(item in present for item in (profile.current, TORQUE))
     no_homing = why_not(table, scale, VELOCITY in present) if settings.homing else "no way of homing was configured"
-    untold = _untold(tells, choice.lacks_rated_current)
-    return Capabilities(identity, profile, present, currents, modes, scale, rows, units.told_counts, no_homing, untold)
+    return Capabilities(
+        identity, profile, present, currents, modes, scale, (*units.rows, rated), units.told_counts, no_homing,
+        choice.lacks_rated_current,
+    )  # fmt: skip
 
 
-def _untold(tells: bool, takes: bool) -> Untold | None:
-    remedy = (
-        "the drive does not tell its motor rated current; set rated_current_a in [drive] to it [A], by the drive's own "
-        "tool or data sheet"
-    )
-    return Untold(remedy, tells, takes) if tells or takes else None
+def _rated_current(table: ObjectTable, settings: CanopenSettings, profile: ObjectProfile) -> UnitRow:
+    """Motor current of 1000 permille torque [A], by the drive and as it is used."""
+    told_a, source = _rated_by_drive(table, settings, profile)
+    used_a = told_a if settings.rated_current_a is None else settings.rated_current_a
+    if isnan(used_a):
+        table.note(_RATED, Need.WISHED, "current", False, "told by neither the drive nor rated_current_a [A]")
+    told = "" if isnan(told_a) else f"{told_a:.6g} by {source}"
+    return UnitRow("motor current of 1000 permille torque in A", told, used_a)
 
 
-def _rated_current_a(table: ObjectTable, settings: CanopenSettings, profile: ObjectProfile) -> float:
-    """Motor current of 1000 permille torque [A]; NaN where neither drive nor settings tell."""
-    if settings.rated_current_a is not None:
-        return settings.rated_current_a
-    told_a = _rated_by_drive_a(table, profile)
-    if told_a is not None:
-        return told_a
-    torque = table.ask(profile.rated_torque or RATED_TORQUE, _RATED)
-    if torque and settings.torque_constant_n_m_a is not None:
-        return torque * (profile.rated_torque or RATED_TORQUE).scale / settings.torque_constant_n_m_a
-    table.note(_RATED, Need.WISHED, "current", False, "told by neither the drive nor rated_current_a [A]")
-    return nan
-
-
-def _rated_by_drive_a(table: ObjectTable, profile: ObjectProfile) -> float | None:
-    """As the drive's own objects have it [A]; None where they do not."""
-    objects = [
-        item for item in (profile.rated_current, profile.rated_torque, profile.torque_constant) if item is not None
-    ]
-    values = [(table.ask(item, _RATED) or 0) * item.scale for item in objects]
-    if not values or not all(values):
-        return None
-    return values[0] if profile.rated_current is not None else values[0] / values[1]
-
-
-def _told(table: ObjectTable, profile: ObjectProfile) -> str:
-    told_a = _rated_by_drive_a(table, profile)
-    return "" if told_a is None else f"{told_a:.6g}"
+def _rated_by_drive(table: ObjectTable, settings: CanopenSettings, profile: ObjectProfile) -> tuple[float, str]:
+    """As the drive's own objects have it [A], and which; NaN where they do not."""
+    if profile.rated_current is not None and (counts := table.ask(profile.rated_current, _RATED)):
+        return counts * profile.rated_current.scale, str(profile.rated_current)
+    torque_object = profile.rated_torque or RATED_TORQUE
+    torque_n_m = (table.ask(torque_object, _RATED) or 0) * torque_object.scale
+    constant, source = settings.torque_constant_n_m_a, "motor.torque_constant_n_m_a of the rig"
+    if profile.torque_constant is not None and (counts := table.ask(profile.torque_constant, _RATED)):
+        constant, source = counts * profile.torque_constant.scale, str(profile.torque_constant)
+    if torque_n_m and constant is not None:
+        return torque_n_m / constant, f"{torque_object} / {source}"
+    return nan, ""

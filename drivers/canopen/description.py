@@ -60,7 +60,7 @@ def describe(settings: CanopenSettings, session: Session | None) -> Description:
         notes=tuple(_notes(session)),
         tables=(_units(session), _objects(session)),
         counts_per_turn=session.found.told_counts,
-        untold=session.found.untold,
+        untold=session.untold,
     )
 
 
@@ -76,7 +76,7 @@ def _notes(session: Session) -> Iterator[str]:
         yield f"A host before left the drive in state '{session.left.value}'. It was switched off."
     if isnan(session.found.scale.velocity_unit_rad_s):
         yield "The velocity counts as not measured: its unit is told by neither drive nor velocity_unit."
-    if untold := session.found.untold:
+    if untold := session.untold:
         wants = " and ".join(["measures no current"] * untold.tells + ["takes none"] * untold.takes)
         yield f"It {wants}: {untold.remedy}."
     if not session.found.units[0].drive:

@@ -180,7 +180,10 @@ class Guard:
             self.disarm()
         except DriveError as error:
             self.armed = False
-            return (error.__cause__ if isinstance(error.__cause__, DriveError) else error).message
+            why = (error.__cause__ if isinstance(error.__cause__, DriveError) else error).message
+            for item, _ in self._watching():  # none of them is required: whichever kind will do is
+                self._table.note(item, Need.WISHED, _PURPOSE, False, why)
+            return why
         return ""
 
     def _accept_own(self, refusals: list[str]) -> None:

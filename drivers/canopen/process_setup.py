@@ -20,12 +20,16 @@ from drivers.canopen.cia402.modes import TARGETS
 from drivers.canopen.cia402.process_data import Arrangement, ProcessData
 from drivers.canopen.cia402.units import interpolation_periods
 from drivers.canopen.settings import CanopenSettings
+from drivers.contract import Mode, Untold
 from drivers.errors import DriveConfigurationError
 
 _SYNC = 0x80
 _SYNC_MATTERS = 0x4000_07FF  # of 0x1005: the COB-ID, and whether the drive produces SYNC
 _PURPOSE = "interpolation of positions"
-_LOST = "no room in a TPDO: not measured"
+_REMEDY = (
+    "the drive does not tell its motor rated current; set rated_current_a in [drive] to it [A], by the drive's own "
+    "tool or data sheet"
+)
 
 
 def set_interpolation(table: ObjectTable, period_s: float) -> None:
@@ -44,7 +48,7 @@ def set_interpolation(table: ObjectTable, period_s: float) -> None:
 def set_up_pdos(
     table: ObjectTable, access: ObjectAccess, settings: CanopenSettings, found: Capabilities
 ) -> ProcessData:
-    """Configure SYNC and the PDOs. A mode whose target finds no room is taken from those that were found.
+    """Configure SYNC and the PDOs. A mode whose target finds no place is taken from those that were found.
 
     Raises:
         DriveConfigurationError: SYNC is elsewhere, or a PDO that is required has no room.
@@ -62,15 +66,33 @@ def set_up_pdos(
         data = Arrangement(access, settings.device, settings.node_id).arrange(targets, offsets, [state, motion])
         if current is None or current not in data.lost:
             break
-        table.note(current, Need.WISHED, "process data", False, _LOST)
+        _note_lost(table, current, data)
     for pdo in (*data.demands.values(), *data.tpdos):
         table.note(pdo, Need.REQUIRED, "process data", True, ", ".join(map(str, pdo.layout.entries)))
-    for mode in [mode for mode, code in found.modes.items() if TARGETS[code] not in data.demands]:
-        why = f"the drive maps {TARGETS[found.modes.pop(mode)]} with the controlword into no RPDO"
-        table.note(f"mode '{mode.value}'", Need.WISHED, "mode", False, why)
-    for item in data.lost:
-        table.note(item, Need.WISHED, "process data", False, _LOST)
+    targets_of = {mode: TARGETS[code] for mode, code in found.modes.items()}
+    if found.lacks_rated_current:
+        targets_of[Mode.CURRENT] = TARGET_TORQUE
+    for mode, target in targets_of.items():
+        if target in data.lost:
+            found.modes.pop(mode, None)
+            why = f"no RPDO takes {target} with the controlword: {data.lost[target]}"
+            table.note(f"mode '{mode.value}'", Need.WISHED, "mode", False, why)
+    for item in (*state, *motion):
+        if item in data.lost:
+            _note_lost(table, item, data)
     return data
+
+
+def untold(found: Capabilities, data: ProcessData) -> Untold | None:
+    """What is to be set for want of the rated current; None where that is known, or would not help."""
+    placed = [found.scale.tells(item) for item in found.currents if data.place(item) is not None]
+    tells = bool(placed) and not any(placed)
+    takes = found.lacks_rated_current and TARGET_TORQUE in data.demands
+    return Untold(_REMEDY, tells, takes) if tells or takes else None
+
+
+def _note_lost(table: ObjectTable, item: DriveObject, data: ProcessData) -> None:
+    table.note(item, Need.WISHED, "process data", False, f"not measured, no TPDO takes it: {data.lost[item]}")
 
 
 def _require_position(table: ObjectTable, settings: CanopenSettings) -> None:
@@ -83,15 +105,19 @@ def _require_position(table: ObjectTable, settings: CanopenSettings) -> None:
 
 
 def _require_sync(table: ObjectTable) -> None:
-    """SYNC at the COB-ID of CiA 301, and the drive does not produce it (bit 30). Many drives have it fixed."""
-    found = table.ask(SYNC_COB_ID, "SYNC", Need.REQUIRED)
+    """SYNC at the COB-ID of CiA 301, and the drive does not produce it (bit 30). Many have it fixed."""
+    found = table.ask(SYNC_COB_ID, "SYNC")
     if found is not None and found & _SYNC_MATTERS != _SYNC:
         table.set(SYNC_COB_ID, _SYNC, "SYNC")
 
 
 def _targets(table: ObjectTable, found: Capabilities) -> list[DriveObject]:
-    """One for each mode; where the drive offers none, whichever target it has: it can be looked at all the same."""
-    used = dict.fromkeys(TARGETS[code] for code in found.modes.values())
-    if used:
-        return list(used)
-    return [item for item in (TARGET_POSITION, TARGET_VELOCITY, TARGET_TORQUE) if table.has(item, "process data")][:1]
+    """One for each mode; where the drive offers none, whichever target it has: it can be looked at all the same.
+
+    A torque whose unit is not known is tried, too: setting the unit is advised only where it would have a place.
+    """
+    used = [TARGETS[code] for code in found.modes.values()]
+    if not used:
+        have = (TARGET_POSITION, TARGET_VELOCITY, TARGET_TORQUE)
+        used = [item for item in have if table.has(item, "process data")][:1]
+    return list(dict.fromkeys([*used, *([TARGET_TORQUE] if found.lacks_rated_current else [])]))

@@ -24,7 +24,7 @@ from drivers.canopen.cia402.state_machine import DISABLE_VOLTAGE
 from drivers.canopen.cia402.stopping import set_up_stopping
 from drivers.canopen.guard import Guard, heartbeat_ms
 from drivers.canopen.meeting import meet
-from drivers.canopen.process_setup import set_interpolation, set_up_pdos
+from drivers.canopen.process_setup import set_interpolation, set_up_pdos, untold
 from drivers.canopen.settings import CanopenSettings
 from drivers.canopen.slow_poll import SlowPoll
 from drivers.contract import Sample, Status
@@ -86,6 +86,7 @@ class Session:
         self.current_limit = set_limits(self.table, settings, self.found)
         set_interpolation(self.table, period_s)
         self.data = set_up_pdos(self.table, self.access, settings, self.found)
+        self.untold = untold(self.found, self.data)
         self.monitor.state = None
         link.load = self.data.sizes
 

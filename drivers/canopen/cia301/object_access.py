@@ -1,6 +1,5 @@
 """Reading and writing objects of the drive by SDO, blocking: for opening and switching, not for control cycles."""
 
-import struct
 from time import perf_counter
 from typing import Final
 
@@ -18,6 +17,8 @@ _BEGINS: Final = (1, 2)  # download, upload: command specifiers of the client (C
 _NAMES_OBJECT: Final = (2, 3, 4)  # upload, download, abort: of the server
 _NO_OBJECT: Final = bytes(3)  # of an abort, where a drive does not say what it aborts
 _WRITE_ONLY: Final = 0x0601_0001
+_OTHER_TYPE: Final = 0x0607_0010
+_UNSIZED: Final = 0b0100_0010  # of an answer to an upload: expedited, its length not told
 
 
 class ObjectRefusedError(DriveConfigurationError):
@@ -37,6 +38,11 @@ class ObjectRefusedError(DriveConfigurationError):
         """Whether the object is there and may not be read."""
         return self.code == _WRITE_ONLY
 
+    @property
+    def other_type(self) -> bool:
+        """Whether the object is there and of another data type than CiA 402 gives it."""
+        return self.code == _OTHER_TYPE
+
 
 class ObjectAccess:
     """The SDO client of one drive."""
@@ -54,15 +60,21 @@ class ObjectAccess:
         """Value of an object [counts].
 
         Raises:
-            ObjectRefusedError: the drive refuses.
-            DriveConnectionError: it does not answer, or not with a value.
+            ObjectRefusedError: the drive refuses, or has something else in its place.
+            DriveConnectionError: it does not answer.
         """
-        try:
-            return item.unpack(self._transfer(item, None))
-        except struct.error as error:
-            raise DriveConnectionError(
-                self._device, f"{item} reads as too few bytes; is it a CiA 402 drive?"
-            ) from error
+        data = self._transfer(item, None)
+        value = item.read(data[: item.type.size] if self._client.unsized else data)
+        if value is None:
+            why = f"{len(data)} bytes came (0x{data[::-1].hex().upper()}), {item.type.size} are allowed by CiA 402"
+            raise ObjectRefusedError(
+                self._device,
+                f"{item} is of another data type: {why}. Nobody knows what it counts; look in the drive's manual for "
+                "a firmware that keeps to the profile",
+                _OTHER_TYPE,
+                why,
+            )
+        return value
 
     def read_if_present(self, item: DriveObject) -> int | None:
         """Value of an object [counts], None where the drive does not tell it, for whatever reason."""
@@ -99,7 +111,7 @@ class ObjectAccess:
 
     def _transfer(self, item: DriveObject, data: bytes | None) -> bytes:
         """Download `data`, or upload where there is none. Both may be repeated without harm."""
-        what = "reading" if data is None else f"writing {item.unpack(data)} to"
+        what = "reading" if data is None else f"writing {item.words(item.unpack(data))} to"
         problem: Exception | None = None
         for _ in range(_ATTEMPTS):
             try:
@@ -135,6 +147,7 @@ class _Client(SdoClient):
         self.RESPONSE_TIMEOUT = answer_s
         self._link = link
         self._asked = b""  # index and subindex of the transfer
+        self.unsized = False  # the last answer did not tell how many of its bytes count
 
     def send_request(self, request: bytes) -> None:
         if request[0] >> 5 in _BEGINS:
@@ -145,6 +158,7 @@ class _Client(SdoClient):
         if len(data) < _SDO_BYTES:
             return
         if data[0] >> 5 not in _NAMES_OBJECT or bytes(data[1:4]) in (self._asked, _NO_OBJECT):
+            self.unsized = data[0] & ~0b1100 == _UNSIZED
             super().on_response(can_id, data, timestamp)  # type: ignore[no-untyped-call]
 
     def read_response(self) -> bytes:

@@ -67,7 +67,7 @@ class ObjectTable:
             DriveConnectionError: it does not answer.
         """
         value = self._access.read(item)
-        self.note(item, Need.REQUIRED, purpose, True, f"{value}")
+        self.note(item, Need.REQUIRED, purpose, True, item.words(value))
         return value
 
     def ask(self, item: DriveObject, purpose: str, need: Need = Need.WISHED) -> int | None:
@@ -77,7 +77,7 @@ class ObjectTable:
         except ObjectRefusedError as refusal:
             self.note(item, need, purpose, False, f"not told: {refusal.why}")
             return None
-        self.note(item, need, purpose, True, f"{value}")
+        self.note(item, need, purpose, True, item.words(value))
         return value
 
     def has(self, item: DriveObject, purpose: str) -> bool:
@@ -86,9 +86,10 @@ class ObjectTable:
             value = self._access.read(item)
         except ObjectRefusedError as refusal:
             there = refusal.write_only
-            self.note(item, Need.WISHED, purpose, there, "write only" if there else f"absent: {refusal.why}")
+            absent = f"{'of another data type' if refusal.other_type else 'absent'}: {refusal.why}"
+            self.note(item, Need.WISHED, purpose, there, "write only" if there else absent)
             return there
-        self.note(item, Need.WISHED, purpose, True, f"{value}")
+        self.note(item, Need.WISHED, purpose, True, item.words(value))
         return True
 
     def set(self, item: DriveObject, value: int, purpose: str) -> None:
@@ -119,13 +120,13 @@ class ObjectTable:
     def _set(self, item: DriveObject, value: int) -> str:
         before = self._value_if_told(item)
         if before == value:
-            return f"{value}, as it was"
+            return f"{item.words(value)}, as it was"
         try:
             self._access.write(item, value)
         except struct.error as error:
             raise DriveConfigurationError(self._device, f"{item} cannot be {value}: {error}") from error
         if before is None:  # write only: nothing can be read back
-            return f"{value}, written; the drive does not tell it"
+            return f"{item.words(value)}, written; the drive does not tell it"
         after = self._access.read(item)
         if after != value:
             raise DriveConfigurationError(
@@ -133,7 +134,7 @@ class ObjectTable:
                 f"{item} reads back as 0x{after & 0xFFFFFFFF:X}; 0x{value & 0xFFFFFFFF:X} is wanted; unlock the object "
                 "in the drive's own tool",
             )
-        return f"{value}, was {before}"
+        return f"{item.words(value)}, was {item.words(before)}"
 
     def _value_if_told(self, item: DriveObject) -> int | None:
         """Value of an object; None of one that may only be written."""

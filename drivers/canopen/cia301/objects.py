@@ -4,6 +4,8 @@ import struct
 from dataclasses import dataclass
 from enum import Enum
 
+_DEVICE_PROFILES = 0x2000  # below this index stands what every CANopen device has
+
 
 class DataType(Enum):
     """Integer types of CiA 301, 7.1: the `struct` code of the little-endian value."""
@@ -19,6 +21,12 @@ class DataType(Enum):
     def size(self) -> int:
         """Length on the wire [bytes]."""
         return struct.calcsize("<" + self.value)
+
+    @property
+    def values(self) -> range:
+        """What fits."""
+        bits = 8 * self.size
+        return range(-(1 << bits - 1), 1 << bits - 1) if self.value.islower() else range(1 << bits)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,13 +59,28 @@ class DriveObject:
         return struct.pack("<" + self.type.value, value)
 
     def unpack(self, data: bytes) -> int:
-        """The value as it was received; devices may send more bytes than the type has.
+        """The value in the first bytes of what was received.
 
         Raises:
             struct.error: there are fewer bytes than the type has.
         """
         value: int = struct.unpack_from("<" + self.type.value, data)[0]
         return value
+
+    def read(self, data: bytes) -> int | None:
+        """The value of an answer that tells its length; None of one that is not of this type.
+
+        A mode or a code in more or fewer bytes means the same, as long as it fits the type. A quantity of another type
+        is another one: drives have amperes, or floating point, where CiA 402 has permille.
+        """
+        value = int.from_bytes(data, "little", signed=self.type.value.islower())
+        if len(data) == self.type.size:
+            return value
+        return value if data and not self.unit and value in self.type.values else None
+
+    def words(self, value: int) -> str:
+        """A value for a person: of CiA 301, whose words are made of parts, by its digits."""
+        return f"0x{value:X}" if self.index < _DEVICE_PROFILES and self.type is DataType.U32 else f"{value}"
 
     @property
     def mapping(self) -> int:

@@ -49,7 +49,8 @@ def _set_current(table: ObjectTable, settings: CanopenSettings, found: Capabilit
     items = [item for item in there if found.scale.tells(item)]
     if not items:
         what = (
-            f"has neither {' nor '.join(map(str, candidates))}; leave it out, and set the limit in the drive's own tool"
+            f"has neither {' nor '.join(map(str, candidates))} as CiA 402 has them; leave it out, and set the limit in "
+            "the drive's own tool"
         )
         if there:
             what = f"does not tell what {' and '.join(map(str, there))} count; set rated_current_a [A] to what 1000 are"

@@ -28,7 +28,7 @@ class Measurement:
         self._position_place = position
         self._velocity_place = place(VELOCITY)
         self._velocity_rad_s = nan if self._velocity_place is None else scale.velocity_rad_s
-        told = next((item for item in found.currents if place(item) is not None), None)
+        told = next((item for item in found.currents if scale.tells(item) and place(item) is not None), None)
         self._current_place = None if told is None else place(told)
         self._current_a = nan if told is None else scale.joint.motor_sign * scale.current_a(told)
         self._duty_place = None if profile.duty is None else place(profile.duty)

@@ -85,7 +85,7 @@ class ModeChoice:
         if self._listed is not None and not self._listed >> (code - 1) & 1:
             return f"not in {SUPPORTED_MODES}"
         if not self._table.has(TARGETS[code], _PURPOSE):
-            return f"no {TARGETS[code]}"
+            return f"{TARGETS[code]} is {self._table.outcome(TARGETS[code], _PURPOSE)}"
         if code in _CURRENT and isnan(self._scale.rated_current_a):
             self.lacks_rated_current = True
             return "what 1000 permille of torque are in A is told by neither drive nor rated_current_a"

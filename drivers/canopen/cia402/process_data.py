@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from drivers.canopen.cia301.object_access import ObjectAccess
+from drivers.canopen.cia301.object_access import ObjectAccess, ObjectRefusedError
 from drivers.canopen.cia301.objects import (
     CONTROLWORD,
     MODE,
@@ -35,12 +35,12 @@ class ProcessData:
         demands: the RPDO of each target that found room; the controlword travels with it, so that neither comes before
             the other. Of a drive without any target, that of the controlword alone.
         tpdos: what the drive tells at every SYNC.
-        lost: objects that found no room in a TPDO.
+        lost: objects that found no place: targets in an RPDO, what is measured in a TPDO; and why, by the drive.
     """
 
     demands: dict[DriveObject, Pdo]
     tpdos: tuple[Pdo, ...]
-    lost: tuple[DriveObject, ...] = ()
+    lost: dict[DriveObject, str]
 
     @property
     def idle(self) -> Pdo:
@@ -92,7 +92,8 @@ class Arrangement:
         self._node_id = node_id
         self._slots: list[Slot] = []
         self._used: list[Pdo] = []
-        self._refusals: list[str] = []
+        self._refusals: list[DriveConfigurationError] = []
+        self._lost: dict[DriveObject, str] = {}
 
     def arrange(
         self, targets: Sequence[DriveObject], offsets: Sequence[DriveObject], groups: Sequence[Sequence[DriveObject]]
@@ -114,35 +115,37 @@ class Arrangement:
             raise self._no_room(" and ".join(map(str, dict.fromkeys((CONTROLWORD, *targets)))), "RPDO")
         self._refusals.clear()
         self._slots = read_slots(self._access, transmit=True)
-        lost = self._place_measured(groups)
+        self._place_measured(groups)
         release(self._access, self._used)
-        return ProcessData(demands, tuple(pdo for pdo in self._used if pdo.transmit), lost)
+        return ProcessData(demands, tuple(pdo for pdo in self._used if pdo.transmit), self._lost)
 
     def _place_demand(self, target: DriveObject, offsets: Sequence[DriveObject]) -> Pdo | None:
         needed = list(dict.fromkeys((CONTROLWORD, target)))
-        made = next(filter(None, (self._place(layout) for layout in ([*needed, *offsets], needed))), None)
-        return made or self._take_fixed(needed, _DEMANDED)
+        made = self._place([*needed, *offsets])
+        before = len(self._refusals)
+        made = made or self._place(needed) or self._take_fixed(needed, _DEMANDED)
+        if made is None:
+            self._lost[target] = self._why_not(before, "RPDO")
+        return made
 
-    def _place_measured(self, groups: Sequence[Sequence[DriveObject]]) -> tuple[DriveObject, ...]:
-        """Place the groups, or first of all what is required in one TPDO; return what found no room."""
+    def _place_measured(self, groups: Sequence[Sequence[DriveObject]]) -> None:
+        """Place the groups, or first of all what is required in one TPDO."""
+        targets = dict(self._lost)
         for tried in (groups, [_REQUIRED, *groups]):
-            self._used = [pdo for pdo in self._used if not pdo.transmit]
-            lost = self._place_groups(tried)
-            missing = [str(item) for item in _REQUIRED if item in lost]
+            self._used, self._lost = [pdo for pdo in self._used if not pdo.transmit], dict(targets)
+            self._place_groups(tried)
+            missing = [item for item in _REQUIRED if not self._is_told(item)]
             if not missing:
-                break
-        else:
-            raise self._no_room(" and ".join(missing), "TPDO")
-        return lost
+                return
+        raise self._no_room(" and ".join(map(str, missing)), "TPDO")
 
-    def _place_groups(self, groups: Sequence[Sequence[DriveObject]]) -> tuple[DriveObject, ...]:
-        """Place the groups, then alone what did not fit; return what found no room."""
+    def _place_groups(self, groups: Sequence[Sequence[DriveObject]]) -> None:
+        """Place the groups, then alone what did not fit."""
         left = [item for group in groups for item in self._place_group([it for it in group if not self._is_told(it)])]
-        ordered = sorted(left, key=lambda item: item not in _REQUIRED)
-        return tuple(item for item in ordered if not (self._is_told(item) or self._place_alone(item)))
-
-    def _place_alone(self, item: DriveObject) -> Pdo | None:
-        return self._place([item]) or self._take_fixed((item,), None)
+        for item in sorted(left, key=lambda item: item not in _REQUIRED):
+            before = len(self._refusals)
+            if not (self._is_told(item) or self._place([item]) or self._take_fixed((item,), None)):
+                self._lost[item] = self._why_not(before, "TPDO")
 
     def _place_group(self, group: list[DriveObject]) -> list[DriveObject]:
         """Place as much of a group as fits; return the rest."""
@@ -199,14 +202,20 @@ class Arrangement:
         try:
             configure(self._access, self._device, pdo, slot)
         except DriveConfigurationError as error:
-            self._refusals.append(error.message)
+            self._refusals.append(error)
             return None
         self._used.append(pdo)
         return pdo
 
     def _no_room(self, what: str, kind: str) -> DriveConfigurationError:
-        why = "; ".join(dict.fromkeys(self._refusals)) or f"it has no {kind} of its own"
+        why = "; ".join(dict.fromkeys(error.message for error in self._refusals)) or f"it has no {kind} of its own"
         return DriveConfigurationError(self._device, f"no {kind} of the drive takes {what}: {why}")
+
+    def _why_not(self, before: int, kind: str) -> str:
+        """What was refused since there were so many refusals, in the drive's words."""
+        refusals = self._refusals[before:]
+        words = [error.why if isinstance(error, ObjectRefusedError) else error.message for error in refusals]
+        return "; ".join(dict.fromkeys(words)) or f"no {kind} is left"
 
 
 def _unknown(word: int) -> DriveObject | None:

@@ -1,5 +1,6 @@
 """The driver against a node that is written in bytes."""
 
+import struct
 import time
 from dataclasses import replace
 from math import isnan, pi
@@ -13,6 +14,7 @@ from drivers.canopen.settings import CanopenSettings
 from drivers.contract import Command, Mode, Status
 from drivers.errors import DriveConfigurationError, DriveConnectionError, DriveStateError, WatchdogError
 from tests.drivers.canopen.conftest import COUNT_RAD, JOINT
+from tests.drivers.canopen.node_double import NodeDouble
 
 OFF = Command(Mode.OFF)
 
@@ -212,6 +214,24 @@ def test_the_profile_that_is_named_is_used(node, drive_of):
     drive.open(0.005)
     assert "supply_v" not in drive.describe().measured
     assert any("epos4: the configuration says so" in row.outcome for row in drive.objects)
+
+
+class Unsized(NodeDouble):
+    """Does not say how many of the four bytes count, as CiA 301 lets it; the others are whatever was there."""
+
+    def _upload(self, entry, head):
+        if entry[0] is None:
+            return super()._upload(entry, head)
+        return self._answer(b"\x42" + head + struct.pack(entry[0], entry[1]).ljust(4, b"\xa5"))
+
+
+def test_a_drive_that_does_not_tell_the_length_of_a_value_is_read(channel, drive_of):
+    with Unsized(channel):
+        drive = drive_of()
+        drive.open(0.005)
+        assert {"current_a", "supply_v"} <= drive.describe().measured
+        assert drive.describe().modes == {Mode.CURRENT, Mode.POSITION}
+        drive.close()
 
 
 def test_the_supply_is_asked_for_between_the_cycles(node, drive_of):
