@@ -161,6 +161,19 @@ class Untold:
 
 
 @dataclass(frozen=True, slots=True)
+class OwnLimit:
+    """The motor current that a drive allows by itself, as somebody has set it there.
+
+    Attributes:
+        current_a: the most that flows [A]; 0 where the drive may not move the motor at all.
+        words: the limit, and which setting of `[drive]` changes it; a sentence.
+    """
+
+    current_a: float
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
 class Description:
     """Identity and capabilities of a drive, as found at connect.
 
@@ -178,6 +191,7 @@ class Description:
         tables: what was found beside, in the drive's own terms.
         counts_per_turn: encoder counts of a motor turn by the drive's own objects; NaN where it tells none.
         untold: what has to be set before the drive can be used in full; None where nothing is.
+        own_limit: of the motor current; None where the drive tells none, or the configuration has set it.
     """
 
     device: str
@@ -198,6 +212,7 @@ class Description:
     tables: tuple[FoundTable, ...] = ()
     counts_per_turn: float = nan
     untold: Untold | None = None
+    own_limit: OwnLimit | None = None
 
 
 class Drive(Protocol):

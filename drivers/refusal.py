@@ -36,7 +36,8 @@ def check_mode(device: str, mode: Mode, modes: frozenset[Mode]) -> None:
     """
     if mode not in modes:
         names = ", ".join(sorted(known.value for known in modes))
-        raise DriveConfigurationError(device, f"has no mode '{mode.value}', only {names}; choose one of these")
+        others = f"only {names}; choose one of these" if modes else "nor any other; 'friction-bench doctor' says why"
+        raise DriveConfigurationError(device, f"has no mode '{mode.value}', {others}")
 
 
 def not_open(device: str, call: str) -> DriveStateError:

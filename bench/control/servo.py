@@ -3,7 +3,7 @@
 from math import isnan, nan
 
 from bench.config.rig import Rig
-from bench.config.sections import ServoSettings
+from bench.config.sections import SearchSettings, ServoSettings
 from bench.errors import ConfigurationError
 from compensator.motor import dc_motor as motor
 from compensator.motor.dc_motor import MotorConstants
@@ -131,6 +131,8 @@ def check_modes(settings: ServoSettings, drive: Description) -> None:
     Raises:
         ConfigurationError: naming the modes that it has, and what to set.
     """
+    if not drive.modes:
+        raise ConfigurationError(without_mode(drive))
     names = ", ".join(sorted(mode.value for mode in drive.modes))
     if settings.closed_by == "drive" and Mode.POSITION not in drive.modes:
         raise ConfigurationError(
@@ -142,6 +144,24 @@ def check_modes(settings: ServoSettings, drive: Description) -> None:
             f"servo.closed_by is 'bench', and drive '{drive.device}' takes neither current nor duty (it has {names}); "
             "set servo.closed_by = 'drive'"
         )
+
+
+def without_mode(drive: Description) -> str:
+    """What is wrong with a drive that can be asked for nothing, and what to do."""
+    remedy = "'friction-bench doctor' says of each why"
+    if drive.untold is not None and drive.untold.takes:
+        remedy = drive.untold.remedy
+    return f"drive '{drive.device}' has no mode that can be used: {remedy}"
+
+
+def held_back(servo: ServoSettings, search: SearchSettings, drive: Description) -> str:
+    """That a drive allows less current than this bench may ask for, in words; "" where it does not."""
+    wanted_a = {
+        "servo.current_a": servo.current_a, "search.ceiling_a": search.ceiling_a,
+    }  # fmt: skip
+    limit = drive.own_limit
+    above = [] if limit is None else [f"{name} is {one:g} A" for name, one in wanted_a.items() if one > limit.current_a]
+    return "" if limit is None or not above else f"{limit.words.removesuffix('.')} ({' and '.join(above)})"
 
 
 def closes_positions_alone(drive: Description) -> bool:

@@ -17,6 +17,7 @@ from bench.control.ending import Outcome, OutcomeName, StopRequest
 from bench.control.loop import ControlLoop
 from bench.control.power.torque_off import torque_off_reason
 from bench.control.recorder import Event, Sink
+from bench.control.servo import held_back
 from bench.control.station import Station
 from bench.errors import ExperimentError, LimitTrip
 from bench.experiments.kind import ExperimentKind, FinishedTrial, Parameters, TrialPlan
@@ -167,6 +168,8 @@ class ExperimentRun:
         if prepared.doubt and not prepared.ask(prepared.doubt):
             return "stopped", self.stop_request.reason
         import_module(COMPUTED_WITH)
+        bench, drive = prepared.station.benches[0], prepared.station.drives[0]
+        held = held_back(bench.servo, bench.search, drive.describe())
         for index, plan in enumerate(prepared.plans):
             self.trial_index = index
             self._wait_while_paused()
@@ -182,7 +185,8 @@ class ExperimentRun:
                 words = "; ".join(filter(None, (why, str(error) or type(error).__name__)))
                 return "refused" if why else "failed", f"trial '{plan.name}': {words}"
             if outcome.outcome != "completed":
-                return outcome.outcome, f"trial '{plan.name}': {outcome.reason}"
+                words = "; ".join(filter(None, (held if outcome.outcome == "failed" else "", outcome.reason)))
+                return outcome.outcome, f"trial '{plan.name}': {words}"
         return "completed", ""
 
     def _prove_watchdog(self, prepared: Prepared) -> tuple[OutcomeName, str] | None:

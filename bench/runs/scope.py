@@ -10,8 +10,8 @@ from math import cos, degrees, isfinite, pi, sin, sqrt
 from typing import NamedTuple
 
 from bench.config.configuration import BenchConfiguration
-from bench.control.servo import closes_positions_alone, current_servo
-from drivers.contract import Description
+from bench.control.servo import current_servo
+from drivers.contract import Description, Mode
 
 _STEADY_S = 0.2  # at one speed, to be a point of a friction curve
 _LEAST_SWING = 0.5  # of the sine of the angle, for a weight to be told from a constant torque
@@ -53,6 +53,8 @@ def setting_to_add(configuration: BenchConfiguration, drive: Description) -> str
 def _scopes(configuration: BenchConfiguration, drive: Description) -> Iterator[Scope]:
     effort = _effort(configuration, drive)
     no_effort = "" if effort else _no_effort(drive)
+    if not drive.modes:
+        no_effort = _no_push(drive)  # nothing moves
     yield _compensation(drive, effort, no_effort)
     yield _at_rest(drive)
     yield _in_motion(configuration, no_effort)
@@ -86,18 +88,20 @@ def _no_effort(drive: Description) -> str:
 
 def _no_push(drive: Description) -> str:
     """Why the drive cannot be asked for an effort, and what to do; "" where it can."""
-    if not closes_positions_alone(drive):
+    if drive.modes - {Mode.POSITION}:
         return ""
+    takes = "it takes positions alone" if drive.modes else "it has no mode that can be used"
     if drive.untold is not None and drive.untold.takes:
-        return f"it takes positions alone as it is set up now: {drive.untold.remedy}"
-    return "it takes positions alone"
+        return f"{takes} as it is set up now: {drive.untold.remedy}"
+    return takes
 
 
 def _compensation(drive: Description, effort: str, no_effort: str) -> Scope:
     what = "friction taken off what the joint is asked for, and off what it tells"
-    if closes_positions_alone(drive) and drive.untold is not None and drive.untold.takes:
-        return Scope(what, Answer.NO, _no_push(drive))
-    if closes_positions_alone(drive):
+    no_push = _no_push(drive)
+    if no_push and (not drive.modes or (drive.untold is not None and drive.untold.takes)):
+        return Scope(what, Answer.NO, no_push)
+    if no_push:
         return Scope(
             what,
             Answer.NO,
@@ -111,8 +115,8 @@ def _compensation(drive: Description, effort: str, no_effort: str) -> Scope:
 
 def _at_rest(drive: Description) -> Scope:
     what = "friction at rest (breakaway)"
-    if closes_positions_alone(drive):
-        return Scope(what, Answer.NO, f"a push of known size is wanted, and {_no_push(drive)}")
+    if no_push := _no_push(drive):
+        return Scope(what, Answer.NO, f"a push of known size is wanted, and {no_push}")
     return Scope(what, Answer.YES, "by pushes that rise until it moves")
 
 
@@ -161,8 +165,8 @@ def _round_the_motor(configuration: BenchConfiguration) -> Scope:
 def _free_play(configuration: BenchConfiguration, drive: Description) -> Scope:
     what = "free play of the gear"
     step_rad, play_rad = drive.resolution.get("position_rad"), configuration.rig.gear.backlash_rad
-    if closes_positions_alone(drive):
-        return Scope(what, Answer.NO, f"it is found by pushes to and fro, and {_no_push(drive)}")
+    if no_push := _no_push(drive):
+        return Scope(what, Answer.NO, f"it is found by pushes to and fro, and {no_push}")
     if play_rad is None or step_rad is None or not isfinite(step_rad):
         return Scope(what, Answer.YES, "from one step of the position on; the rig says nothing of its size")
     if play_rad < _LEAST_STEPS * step_rad:

@@ -9,7 +9,7 @@ from drivers.canopen.cia402.power_stage import SWITCH_OFF_S
 from drivers.canopen.cia402.state_machine import State
 from drivers.canopen.session import Session
 from drivers.canopen.settings import CanopenSettings
-from drivers.contract import Description, FoundTable, Watchdog
+from drivers.contract import Description, FoundTable, Mode, Watchdog
 
 _SOME_S: Final = 1.0  # of whatever else a call takes
 _CALL_QUESTIONS: Final = 4  # that are asked in a call, where the drive is slow to answer
@@ -61,6 +61,7 @@ def describe(settings: CanopenSettings, session: Session | None) -> Description:
         tables=(_units(session), _objects(session)),
         counts_per_turn=session.found.told_counts,
         untold=session.untold,
+        own_limit=session.own_limit,
     )
 
 
@@ -70,8 +71,11 @@ def _notes(session: Session) -> Iterator[str]:
     yield session.stopping.words
     if not session.guard.is_told:
         yield "Its dictionary does not tell that reaction: it is tried each time before the first motion."
-    if session.current_limit:
-        yield session.current_limit
+    if session.own_limit is not None:
+        yield session.own_limit.words
+    if not session.found.modes:
+        whys = (session.table.outcome(f"mode '{mode.value}'", "mode") for mode in (Mode.CURRENT, Mode.POSITION))
+        yield f"It has no mode that can be used: {'; '.join(whys)}."
     if session.left in (State.ENABLED, State.QUICK_STOP):
         yield f"A host before left the drive in state '{session.left.value}'. It was switched off."
     if isnan(session.found.scale.velocity_unit_rad_s):

@@ -83,7 +83,7 @@ class Session:
             PRODUCER_HEARTBEAT, heartbeat_ms(settings), "the drive's own sign of life"
         )
         self._outputs = self._set_up_brake()
-        self.current_limit = set_limits(self.table, settings, self.found)
+        self.own_limit = set_limits(self.table, settings, self.found)
         set_interpolation(self.table, period_s)
         self.data = set_up_pdos(self.table, self.access, settings, self.found)
         self.untold = untold(self.found, self.data)

@@ -1,8 +1,9 @@
 """`friction-bench doctor` on the simulated bench; on real drives see tests/drivers."""
 
 import json
+from dataclasses import replace
 
-from bench.runs import scope
+from bench.runs import connection, scope
 
 
 def test_it_says_what_the_drive_is_and_moves_nothing(command):
@@ -32,6 +33,20 @@ def test_it_ends_with_the_setting_that_is_to_be_added(command, monkeypatch):
     monkeypatch.setattr(scope, "setting_to_add", lambda *_: "set rated_current_a in [drive]")
     said = command("doctor").output.splitlines()
     assert said[-1] == "To be added to the bench's file: set rated_current_a in [drive]."
+
+
+def test_a_drive_without_any_mode_is_not_passed_over(command, monkeypatch):
+    connect = connection.connect
+
+    def without_modes(configuration):
+        found = connect(configuration)
+        return replace(found, description=replace(found.description, modes=frozenset()))
+
+    monkeypatch.setattr(connection, "connect", without_modes)
+    found = command("doctor")
+    assert found.exit_code == 3
+    assert "has no mode that can be used" in found.output.replace("\n", " ")
+    assert json.loads(command("doctor", "--json").stdout)["connection"]["description"]["modes"] == []
 
 
 def test_a_zero_needs_a_drive_on_a_wire(command):

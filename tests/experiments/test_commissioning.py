@@ -1,5 +1,6 @@
 """The commissioning move finds wrong signs and scales; without its pass a real drive runs nothing."""
 
+from dataclasses import replace
 from math import nan, pi, sin
 
 import pytest
@@ -13,7 +14,7 @@ from bench.errors import ConfigurationError, LimitError, NotCommissionedError
 from bench.experiments.analysis.commissioning_checks import Push, findings, position_findings
 from bench.runs.runner import Runner
 from bench.store import Store
-from drivers.contract import Command, Mode, Sample, Status
+from drivers.contract import Command, Mode, OwnLimit, Sample, Status
 from tests.control.fake_drive import RATIO, RIG, FakeDrive
 from tests.experiments.bench_run import Ran
 
@@ -202,6 +203,31 @@ def test_a_move_that_failed_is_no_pass(real_bench):
     assert store.experiments()[0].outcome == "failed"
     with pytest.raises(NotCommissionedError):
         runner.start("steps", {"repeats": 1})
+
+
+class HeldBack(FakeDrive):
+    """Lets no current flow that would move the joint, and says so."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.friction_n_m = 50.0
+
+    def describe(self):
+        limit = OwnLimit(0.1, "The drive limits the motor current to 0.1 A (max torque); current_limit_a sets it.")
+        return replace(super().describe(), own_limit=limit)
+
+
+@pytest.mark.parametrize("fake", [HeldBack()])
+def test_a_joint_that_stands_is_told_the_drives_own_limit_first(real_bench):
+    store, make_runner = real_bench
+    runner = make_runner()
+    runner.start("commissioning", {})
+    assert runner.wait(60.0)
+    said = store.experiments()[0].reason
+    assert (
+        "0.1 A (max torque); current_limit_a sets it (servo.current_a is 1.6 A and search.ceiling_a is 1.5 A); " in said
+    )
+    assert said.index("The drive limits the motor current") < said.index("the joint moved by")
 
 
 @pytest.mark.parametrize("fake", [PositionDrive()])

@@ -113,3 +113,13 @@ def test_free_play_below_the_steps_of_the_position_is_not_seen():
     assert coarse.answer is Answer.NO
     assert "steps of the position" in coarse.why
     assert answers(found=drive(step_rad=nan))["free play of the gear"].answer is Answer.YES
+
+
+@pytest.mark.parametrize("untold", [None, Untold("set rated_current_a in [drive]", tells=False, takes=True)])
+def test_a_drive_without_any_mode_can_do_nothing_that_moves(untold):
+    bare = replace(drive(modes=(), measured=("position_rad", "current_a")), untold=untold)
+    found = answers(found=bare)
+    for name in (COMPENSATION, "friction at rest", "friction in motion", WEIGHT, "free play of the gear"):
+        assert found[name].answer is Answer.NO
+        assert "it has no mode that can be used" in found[name].why
+        assert untold is None or untold.remedy in found[name].why

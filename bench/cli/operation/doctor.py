@@ -73,6 +73,21 @@ def doctor(
         print_json(answer)
     elif lacking := setting_to_add(session.configuration(), found.description):
         say(f"To be added to the bench's file: {lacking}.")
+    _conclude(found.description, passed, set_zero)
+
+
+def _conclude(drive: "Description", passed: bool, set_zero: bool) -> None:
+    """End as what was found is to end.
+
+    Raises:
+        ConfigurationError: the drive can be asked for nothing; its zero can be set all the same.
+        typer.Exit: something is not as wanted.
+    """
+    from bench.control.servo import without_mode
+    from bench.errors import ConfigurationError
+
+    if not drive.modes and not set_zero:
+        raise ConfigurationError(without_mode(drive))
     if not passed:
         raise typer.Exit(ExitCode.NOT_COMPLETED)
 
@@ -148,7 +163,7 @@ def _show(session: BenchSession, found: "Connection") -> None:
         ("identity", " ".join(filter(None, (description.vendor, description.product))) or "not told"),
         ("firmware, serial", f"{description.firmware or 'not told'}, {description.serial or 'not told'}"),
         ("simulated", "yes, by what it says of itself" if description.simulated else "no"),
-        ("modes", ", ".join(sorted(mode.value for mode in description.modes))),
+        ("modes", ", ".join(sorted(mode.value for mode in description.modes)) or "none"),
         ("highest rate", f"{description.max_rate_hz:.0f} cycles/s"),
         ("rate now", f"{found.rate_hz:.1f} cycles/s at a period of {1e3 * found.period_s:g} ms"),
         ("one exchange", f"{1e3 * found.exchange_s:.2f} ms, the slowest {1e3 * found.slowest_s:.2f} ms"),

@@ -50,7 +50,7 @@ class ObjectTable:
         """In the order of first use."""
         return tuple(self._rows.values())
 
-    def outcome(self, item: DriveObject, purpose: str) -> str:
+    def outcome(self, item: object, purpose: str) -> str:
         """What became of an object; "" where it was not used."""
         row = self._rows.get((str(item), purpose))
         return row.outcome if row is not None else ""

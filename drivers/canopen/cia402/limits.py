@@ -6,13 +6,14 @@ from drivers.canopen.capabilities import Capabilities
 from drivers.canopen.cia301.object_table import Need, ObjectTable
 from drivers.canopen.cia301.objects import HIGHEST_POSITION, LOWEST_POSITION, MAX_TORQUE, DriveObject
 from drivers.canopen.settings import CanopenSettings
+from drivers.contract import OwnLimit
 from drivers.errors import DriveConfigurationError
 
 _PURPOSE = "limit in the drive"
 
 
-def set_limits(table: ObjectTable, settings: CanopenSettings, found: Capabilities) -> str:
-    """Set each limit that the settings name, and read it back; what the drive's own limit of current is, in words.
+def set_limits(table: ObjectTable, settings: CanopenSettings, found: Capabilities) -> OwnLimit | None:
+    """Set each limit that the settings name, and read it back; the drive's own limit of current where they name none.
 
     Raises:
         DriveConfigurationError: the drive has no such limit, refuses it, or keeps another one.
@@ -21,20 +22,24 @@ def set_limits(table: ObjectTable, settings: CanopenSettings, found: Capabilitie
         _set_current(table, settings, found, settings.current_limit_a)
     if settings.position_min_rad is not None and settings.position_max_rad is not None:
         _set_positions(table, found, settings.position_min_rad, settings.position_max_rad)
-    return "" if settings.current_limit_a is not None else _own_current(table, found)
+    return None if settings.current_limit_a is not None else _own_current(table, found)
 
 
-def _own_current(table: ObjectTable, found: Capabilities) -> str:
-    """The lowest limit of current that somebody has set in the drive, in words; "" where it tells none."""
+def _own_current(table: ObjectTable, found: Capabilities) -> OwnLimit | None:
+    """The lowest limit of current that somebody has set in the drive; None where it tells none."""
     told = {item: table.ask(item, _PURPOSE) for item in _limiting(found)}
     if none := " and ".join(str(item) for item, value in told.items() if value == 0):
-        return f"The drive may not move the motor, for its {none} is 0; set current_limit_a [A] in [drive]."
+        words = f"The drive may not move the motor, for its {none} is 0; set current_limit_a [A] in [drive]."
+        return OwnLimit(0.0, words)
     limits_a = {item: value * found.scale.current_a(item) for item, value in told.items() if value}
     limits_a = {item: limit_a for item, limit_a in limits_a.items() if not isnan(limit_a)}
     if not limits_a:
-        return ""
+        return None
     lowest = min(limits_a, key=limits_a.__getitem__)
-    return f"The drive limits the motor current to {limits_a[lowest]:.3g} A ({lowest}); current_limit_a sets it."
+    return OwnLimit(
+        limits_a[lowest],
+        f"The drive limits the motor current to {limits_a[lowest]:.3g} A ({lowest}); current_limit_a sets it.",
+    )
 
 
 def _limiting(found: Capabilities) -> list[DriveObject]:

@@ -2,6 +2,9 @@
 
 import pytest
 
+from bench.config.configuration import default_configuration
+from bench.control.servo import check_modes, held_back
+from bench.errors import ConfigurationError
 from drivers.canopen.cia301.objects import MAX_TORQUE, MODE, PROFILE_VELOCITY, TORQUE
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError
@@ -11,7 +14,7 @@ from sim_backend.devices.canopen.objects.family import Rating
 from sim_backend.devices.canopen.objects.generic import GENERIC
 from sim_backend.devices.joint_tables import behind_a_drive
 from tests.drivers.dictionaries.attempt import PERIOD_S, RATED_A, device, host
-from tests.drivers.dictionaries.traits import TRAITS, Trait
+from tests.drivers.dictionaries.traits import PROFILE_TORQUE, TRAITS, Trait
 
 pytestmark = pytest.mark.virtual_time
 UNRATED = (0x6075, 0x6076, 0x6078)
@@ -133,3 +136,43 @@ def test_a_word_of_a_mapping_is_told_by_its_digits(tmp_path) -> None:
         drive.open(PERIOD_S)
         assert rows_of(drive, "SYNC")["COB-ID of SYNC"].outcome == "0x80"
         assert rows_of(drive, "identity")["device type"].outcome == "0x20192"
+
+
+def test_a_drive_without_any_mode_says_what_would_give_it_one(tmp_path) -> None:
+    torque_alone = Trait(without=UNRATED, default={(0x6502, 0): PROFILE_TORQUE})
+    sheet = torque_alone.write(tmp_path, "modeless")
+    with device(sheet) as running, host(running) as drive:
+        drive.open(PERIOD_S)
+        found = drive.describe()
+        assert not found.modes
+        [note] = [note for note in found.notes if note.startswith("It has no mode that can be used: ")]
+        assert "profile torque (4): what 1000 permille of torque are in A is told by neither drive" in note
+        assert "profile position (1): not in supported drive modes" in note
+        with pytest.raises(ConfigurationError, match=r"no mode that can be used: .* set rated_current_a in \[drive\]"):
+            check_modes(default_configuration().servo, found)
+        with pytest.raises(
+            DriveConfigurationError, match="has no mode 'position', nor any other; 'friction-bench doctor'"
+        ):
+            drive.enable(Mode.POSITION)
+    with device(sheet) as running, host(running, rated_current_a=RATED_A) as drive:
+        drive.open(PERIOD_S)
+        assert drive.describe().modes == {Mode.CURRENT}
+
+
+@pytest.mark.parametrize(("permille", "held_a"), [(100, 0.1), (0, 0.0)])
+def test_a_drive_that_holds_back_its_current_is_known_to(permille, held_a, tmp_path) -> None:
+    sheet = Trait().write(tmp_path, "held-back")
+    configuration = default_configuration()
+    with device(sheet) as running:
+        running.device.dictionary.put(0x6073, 0, permille)
+        with host(running, rated_current_a=RATED_A) as drive:
+            drive.open(PERIOD_S)
+            limit = drive.describe().own_limit
+            assert limit is not None
+            assert limit.current_a == pytest.approx(held_a)
+            held = held_back(configuration.servo, configuration.search, drive.describe())
+            assert held.startswith(limit.words.removesuffix("."))
+            assert "search.ceiling_a is " in held
+        with host(running, rated_current_a=RATED_A, current_limit_a=2.0) as drive:
+            drive.open(PERIOD_S)
+            assert held_back(configuration.servo, configuration.search, drive.describe()) == ""
