@@ -75,7 +75,7 @@ class ObjectTable:
         try:
             value = self._access.read(item)
         except ObjectRefusedError as refusal:
-            self.note(item, need, purpose, False, f"not told: {refusal.why}")
+            self.note(item, need, purpose, False, _refused(refusal, "not told"))
             return None
         self.note(item, need, purpose, True, item.words(value))
         return value
@@ -86,8 +86,7 @@ class ObjectTable:
             value = self._access.read(item)
         except ObjectRefusedError as refusal:
             there = refusal.write_only
-            absent = f"{'of another data type' if refusal.other_type else 'absent'}: {refusal.why}"
-            self.note(item, Need.WISHED, purpose, there, "write only" if there else absent)
+            self.note(item, Need.WISHED, purpose, there, "write only" if there else _refused(refusal, "absent"))
             return there
         self.note(item, Need.WISHED, purpose, True, item.words(value))
         return True
@@ -144,3 +143,7 @@ class ObjectTable:
             if refusal.write_only:
                 return None
             raise
+
+
+def _refused(refusal: ObjectRefusedError, otherwise: str) -> str:
+    return f"{'of another data type' if refusal.other_type else otherwise}: {refusal.why}"

@@ -60,7 +60,7 @@ def test_an_object_of_another_width_is_done_without_and_says_why(tmp_path) -> No
         assert rows_of(drive, "measured")["torque actual value"].outcome == wide
         assert f"target torque (0x6071:00) is {wide}" in rows_of(drive, "mode")["mode 'current'"].outcome
         limit = rows_of(drive, "limit in the drive")["max torque"]
-        assert "4 bytes came (0x40E00000), 2 are allowed" in limit.outcome
+        assert limit.outcome == "of another data type: 4 bytes came (0x40E00000), 2 are allowed by CiA 402"
         assert not [note for note in drive.describe().notes if "may not move" in note or "limits the motor" in note]
 
 
