@@ -14,7 +14,7 @@ from sim_backend.devices.canopen.objects.family import Rating
 from sim_backend.devices.canopen.objects.generic import GENERIC
 from sim_backend.devices.joint_tables import behind_a_drive
 from tests.drivers.dictionaries.attempt import PERIOD_S, RATED_A, device, host
-from tests.drivers.dictionaries.traits import PROFILE_TORQUE, TRAITS, Trait
+from tests.drivers.dictionaries.traits import PROFILE_POSITION, PROFILE_TORQUE, TRAITS, Trait
 
 pytestmark = pytest.mark.virtual_time
 UNRATED = (0x6075, 0x6076, 0x6078)
@@ -132,7 +132,18 @@ def test_a_rated_current_by_torque_and_constant_is_told_as_such(tmp_path) -> Non
 
 
 def test_a_word_of_a_mapping_is_told_by_its_digits(tmp_path) -> None:
-    with device(Trait(without=(0x6078,)).write(tmp_path, "words")) as running, host(running) as drive:
+    fixed = Trait(without=(0x607A,), added=without_pdo(0x607A), default={(0x6502, 0): PROFILE_POSITION})
+    says = r"writing 0x607A0020 to mapping of RPDO1 \(0x1600:02\): refused"
+    with (
+        device(fixed.write(tmp_path, "words")) as running,
+        host(running) as drive,
+        pytest.raises(DriveConfigurationError, match=says),
+    ):
+        drive.open(PERIOD_S)
+
+
+def test_values_of_the_communication_profile_are_told_by_their_digits(tmp_path) -> None:
+    with device(Trait().write(tmp_path, "digits")) as running, host(running) as drive:
         drive.open(PERIOD_S)
         assert rows_of(drive, "SYNC")["COB-ID of SYNC"].outcome == "0x80"
         assert rows_of(drive, "identity")["device type"].outcome == "0x20192"
