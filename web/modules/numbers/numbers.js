@@ -9,7 +9,7 @@ import { duration } from "../ui/format.js";
 
 export function numbersView(place, { live, state }) {
   const [joint, doing, note] = [h("div", { class: "numbers-joint" }), h("p", { class: "numbers-doing", role: "status" }), h("p", { class: "soft numbers-note" })];
-  const [angle, current, load, left] = ["angle", "current", "load current", "time left"].map((text) => {
+  const [angle, current, load, left] = ["angle", currentName(), "load current", "time left"].map((text) => {
     const value = h("dd", {}, "–");
     const name = h("dt", {}, text);
     return { name, value, element: h("div", {}, name, value) };
