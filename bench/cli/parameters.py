@@ -22,14 +22,14 @@ def parameter_command(kind: ExperimentKind, run: Callable[..., None], **common: 
 
     Args:
         kind: its parameters' JSON schema gives names, units, bounds and defaults.
-        run: called as run(context, kind, parameters, <common options>); parameters as text, None where not given.
+        run: called as run(context, kind, parameters, <common options>); parameters as texts, none where not given.
         common: annotation of each further option, by name; all are optional.
     """
     schema = kind.parameters.model_json_schema()
     properties: dict[str, Schema] = schema.get("properties", {})
 
     def command(context: typer.Context, **options: Any) -> None:
-        parameters = {name: options.pop(name) for name in properties}
+        parameters: dict[str, list[str]] = {name: options.pop(name) or [] for name in properties}
         run(context, kind, parameters, **options)
 
     options = {name: _option(name, each, name in schema.get("required", [])) for name, each in properties.items()}
@@ -53,19 +53,24 @@ def parameter_command(kind: ExperimentKind, run: Callable[..., None], **common: 
     return typer.main.get_command(made)
 
 
-def given(kind: ExperimentKind, options: dict[str, str | None]) -> "dict[str, Value]":
+def given(kind: ExperimentKind, options: dict[str, list[str]]) -> "dict[str, Value]":
     """What was typed, as the values that the parameters' model reads.
 
-    Lists are separated by commas. A parameter that holds a file is given as its path; the file's name goes along.
+    Lists are separated by commas, or given one by one. A parameter that holds a file is given as its path; the file's
+    name goes along.
 
     Raises:
+        BadParameter: one that is no list, given several times.
         ConfigurationError: a file that cannot be read.
     """
     properties = kind.parameters.model_json_schema().get("properties", {})
     values: dict[str, Value] = {}
-    for name, text in options.items():
-        if text is None:
+    for name, texts in options.items():
+        if not texts:
             continue
+        text = ",".join(texts)
+        if len(texts) > 1 and properties[name].get("type") != "array":
+            raise typer.BadParameter(f"{name} is given {len(texts)} times, as {', '.join(texts)}; give one value")
         if "file" in properties[name]:
             values.setdefault(properties[name]["file"], Path(text).name)
         values[name] = _value(text, properties[name])
@@ -97,7 +102,7 @@ def _option(name: str, schema: Schema, required: bool) -> Any:
     metavar = {"array": "A,B,...", "integer": "INTEGER", "number": "NUMBER", "boolean": "true|false"}
     flag = "--" + name.replace("_", "-")
     shown = "FILE" if "file" in schema else metavar.get(schema.get("type", ""), "TEXT")
-    return Annotated[str | None, typer.Option(flag, metavar=shown, help=hint)]
+    return Annotated[list[str] | None, typer.Option(flag, metavar=shown, help=hint)]
 
 
 def _bounded(schema: Schema) -> Schema:

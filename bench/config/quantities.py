@@ -25,6 +25,7 @@ UNITS: dict[str, str] = {  # the longest ending wins
     "_rad": "rad",
     "_hz": "Hz",
     "_kg": "kg",
+    "_g": "g",
     "_s": "s",
     "_m": "m",
     "_n": "N",

@@ -1,4 +1,7 @@
-"""What one control cycle of a joint or a pair is made of: a procedure's action, the reading that answers, the row."""
+"""What one control cycle of a joint or a pair is made of: a procedure's action, the reading that answers, the row.
+
+A channel that is made of samples is a field of `Reading`, what `reading_of` fills it with, and a line of the table.
+"""
 
 from collections.abc import Callable, Generator, Sequence
 from math import nan
@@ -12,10 +15,11 @@ from drivers.contract import Command, Mode, Sample, Status
 OFF = Command(Mode.OFF)
 _CURRENT, _ENABLED = Mode.CURRENT, Status.ENABLED  # at hand: Python 3.11 takes 0.1 us to find a member of an Enum
 Row = tuple[float, ...]
+Estimate = Callable[[Sample, float], float]
 
 
 class Reading(NamedTuple):
-    """What a procedure receives each cycle.
+    """What a procedure receives each cycle: `reading_of` fills it, by place.
 
     Attributes:
         time_s: since the start of the trial, from the drive's own stamps [s].
@@ -30,6 +34,44 @@ class Reading(NamedTuple):
     velocity_rad_s: float
     current_a: float
     current_estimate_a: float = nan
+
+
+NOTHING = Reading(0.0, Sample(nan, nan, nan, nan, nan, nan, nan, nan, Status.DISABLED), 0.0, nan)
+"""Before the first."""
+
+
+def reading_of(
+    sample: Sample, previous: Reading, origin_s: float, estimate: Estimate | None, torque_constant_n_m_a: float
+) -> Reading:
+    """Make the reading of a sample.
+
+    Args:
+        sample: as the drive gave it.
+        previous: the reading before.
+        origin_s: the drive's stamp at the start of the trial [s].
+        estimate: eq. (3), of the sample and the speed; None where the rig does not say enough.
+        torque_constant_n_m_a: of the motor [N m/A]; NaN where it is not known.
+    """
+    time_s, _, _, velocity_rad_s, _, current_a = sample[:6]
+    torque_n_m = sample[11]
+    if velocity_rad_s != velocity_rad_s:  # NaN
+        velocity_rad_s = _derived_velocity(sample, previous)
+    estimate_a = nan if estimate is None else estimate(sample, velocity_rad_s)
+    if current_a != current_a:  # NaN
+        current_a = estimate_a
+        if torque_n_m == torque_n_m:  # an actuator that makes a torque of its current before it tells it
+            current_a = torque_n_m / torque_constant_n_m_a
+            sample = sample._replace(current_a=current_a)
+    return Reading(time_s - origin_s, sample, velocity_rad_s, current_a, estimate_a)
+
+
+def _derived_velocity(sample: Sample, reading: Reading) -> float:
+    """By the sample before; as it was where no time has passed, and 0 at the first."""
+    previous, velocity_rad_s = reading[1:3]
+    elapsed_s = sample.time_s - previous.time_s
+    if not elapsed_s > 0.0:  # NaN, too
+        return velocity_rad_s
+    return (sample.position_rad - previous.position_rad) / elapsed_s
 
 
 class Action(NamedTuple):

@@ -2,7 +2,7 @@
 
 from math import isnan, nan
 
-from bench.control.cycle import OFF, Action, Reading
+from bench.control.cycle import NOTHING, OFF, Action, reading_of
 from bench.control.limits import Guard
 from bench.control.power.brake import Brake
 from bench.control.servo import CurrentServo
@@ -13,7 +13,6 @@ from drivers.errors import DriveStateError
 _OFF, _DUTY, _CURRENT, _TORQUE = Mode.OFF, Mode.DUTY, Mode.CURRENT, Mode.TORQUE
 _ENABLED = Status.ENABLED  # at hand, see cycle.py
 _IDLE = Action(OFF)
-_NOTHING = Reading(0.0, Sample(nan, nan, nan, nan, nan, nan, nan, nan, Status.DISABLED), 0.0, nan)
 POWER_OFF_TRIES = 3
 
 
@@ -54,7 +53,7 @@ class ControlledJoint:
         self._stand_in = _TORQUE if _TORQUE in modes else _DUTY
         self._torque_constant_n_m_a = torque_constant_n_m_a
         self.action = _IDLE
-        self.reading = _NOTHING
+        self.reading = NOTHING
         self.demanded = Mode.OFF
         self._mode = Mode.OFF  # of the power stage
         self._origin_s = 0.0
@@ -71,7 +70,7 @@ class ControlledJoint:
 
     def begin(self) -> None:
         """Begin a trial with a sample taken with the power off: its time counts from there."""
-        self.reading, self._origin_s = _NOTHING, 0.0
+        self.reading, self._origin_s = NOTHING, 0.0
         self.coast()
         self._origin_s = self.reading.time_s
         self.reading = self.reading._replace(time_s=0.0)
@@ -143,18 +142,9 @@ class ControlledJoint:
 
     def take(self, sample: Sample) -> None:
         """Make the reading of a sample."""
-        time_s, _, _, velocity_rad_s, _, current_a = sample[:6]
-        torque_n_m = sample[11]
         servo = self._current_servo
-        if velocity_rad_s != velocity_rad_s:  # NaN
-            velocity_rad_s = self._derived_velocity(sample)
-        estimate_a = nan if servo is None else servo.estimate_a(sample, velocity_rad_s)
-        if current_a != current_a:  # NaN
-            current_a = estimate_a
-            if torque_n_m == torque_n_m:  # an actuator that makes a torque of its current before it tells it
-                current_a = torque_n_m / self._torque_constant_n_m_a
-                sample = sample._replace(current_a=current_a)
-        self.reading = Reading(time_s - self._origin_s, sample, velocity_rad_s, current_a, estimate_a)
+        estimate = None if servo is None else servo.estimate_a
+        self.reading = reading_of(sample, self.reading, self._origin_s, estimate, self._torque_constant_n_m_a)
 
     def check(self, target_rad: float) -> None:
         """Compare the reading with the limits, and the drive's state with what was asked of it.
@@ -216,14 +206,6 @@ class ControlledJoint:
         """The mode that the drive is sent the action in."""
         mode = self.action.command.mode
         return self._stand_in if mode is _CURRENT and self._lacks_current_mode else mode
-
-    def _derived_velocity(self, sample: Sample) -> float:
-        """By the sample before; as it was where no time has passed, and 0 at the first."""
-        previous, velocity_rad_s = self.reading[1:3]
-        elapsed_s = sample.time_s - previous.time_s
-        if not elapsed_s > 0.0:  # NaN, too
-            return velocity_rad_s
-        return (sample.position_rad - previous.position_rad) / elapsed_s
 
     def _refuse_state(self, status: Status) -> None:
         if status is Status.FAULT:

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from bench.errors import ParameterError
-from bench.evaluation.blind.imperfections import worn
 from bench.evaluation.blind.items import FAMILIES, SINGLE, Item, draw_item, items_of
 from bench.evaluation.blind.judge import judge
 from bench.evaluation.blind.pool import ResultsError, run_items
+from bench.evaluation.blind.recorded import worn
 from bench.evaluation.blind.result import Result
 from compensator.lab.recordings.recording import Recording
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from bench.config.channels import CHANNELS
 from bench.service.http.page import WEB
 from tests.browser.browser import imported
 
@@ -374,9 +375,19 @@ def test_what_is_read_has_a_minus_and_what_is_typed_a_hyphen(call):
     assert call("ui/format", "[m.plain(-0.5), m.plain(null)]") == ["-0.5", "–"]
 
 
+def test_the_page_has_every_channel_by_the_name_and_unit_of_the_table(call):
+    units = call("ui/format", f"{json.dumps(list(CHANNELS))}.map(m.unitOf)")
+    assert units == ["" if one.unit == "1" else one.unit for one in CHANNELS.values()]
+    assert call("ui/format", f"{json.dumps(list(CHANNELS))}.map(m.nameOf)") == [one.label for one in CHANNELS.values()]
+
+
 def test_a_channel_has_one_name_on_the_whole_page(call):
     assert call("ui/format", "m.withUnit('current_estimate_a')") == "current from duty [A]"
     assert call("ui/format", "m.withUnit('current_load_a')") == "load current [A]"
+    assert call("ui/format", "[m.withUnit('acceleration_rad_s2'), m.withUnit('enabled')]") == [
+        "acceleration [°/s²]",
+        "power",
+    ]
     listed = {"loads_kg": [0, 0.1], "waveforms": ["sweep"], "repeats": 2}
     assert call("ui/format", f"m.conditions({listed})") == "loads 0 g, 100 g, waveforms sweep, repeats 2"
 

@@ -24,6 +24,12 @@ def wait_until_recorded(service, page) -> None:
     raise AssertionError("no row came")
 
 
+def test_views_without_a_tab_are_linked_to_from_the_bench(open_page):
+    page = open_page("#bench")
+    for text, address in (("Big numbers", "#numbers"), ("Commission a joint", "#commission")):
+        assert page.get_by_role("link", name=text).get_attribute("href") == address
+
+
 def test_the_technician_starts_watches_and_stops(service, open_page):
     page = open_page(token=False)
     page.get_by_text("SIMULATED", exact=True).wait_for()

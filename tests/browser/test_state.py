@@ -201,9 +201,9 @@ def test_stop_with_a_refused_token_does_not_say_that_there_is_none(open_page):
     ("reading", "off", "named"),
     [
         ({"current_a": -1.39, "current_measured": False, "current_estimate_a": -1.39}, False, "current from duty"),
-        ({"current_a": -1.39, "current_measured": True, "current_estimate_a": -1.2}, False, "current"),
+        ({"current_a": -1.39, "current_measured": True, "current_estimate_a": -1.2}, False, "motor current"),
         ({"current_a": -1.39, "current_measured": False, "current_estimate_a": -1.39}, True, "last current from duty"),
-        ({"current_a": -1.39}, False, "current"),  # of a service that does not tell yet
+        ({"current_a": -1.39}, False, "motor current"),  # of a service that does not tell yet
     ],
 )
 def test_a_current_is_called_what_it_is(open_page, reading, off, named):

@@ -50,6 +50,9 @@ def test_lists_are_separated_by_commas(command):
     ran = command("run", "load-sweep", "--loads-kg", "0,0.05", "--angles-rad", "1.57", "--json")
     assert ran.exit_code == 0, ran.output
     assert json.loads(ran.stdout)["parameters"]["loads_kg"] == [0.0, 0.05]
+    one_by_one = ["--loads-kg", "0", "--loads-kg", "0.05"]
+    ran = command("run", "load-sweep", *one_by_one, "--angles-rad", "1.57", "--json")
+    assert json.loads(ran.stdout)["parameters"]["loads_kg"] == [0.0, 0.05]
 
 
 @pytest.mark.parametrize(
@@ -57,6 +60,7 @@ def test_lists_are_separated_by_commas(command):
     [
         (["run", "steps", "--load-kg", "5"], 3, "load_kg is 5 kg; allowed is at most 0.1 kg"),
         (["run", "steps", "--repeats", "many"], 3, "repeats: found 'many'"),
+        (["run", "steps", "--repeats", "1", "--repeats", "2"], 2, "repeats is given 2 times, as 1, 2; give one value"),
         (["run", "dance"], 2, "known are steps"),
         (["run", "steps", "--speed", "1"], 2, "No such option"),
         (["trial", "7"], 3, "trial 7 is not in the store"),

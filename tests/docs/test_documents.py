@@ -13,7 +13,7 @@ from typer.core import TyperGroup
 import bench
 from bench.cli.app import ListedCommand
 from bench.cli.commands import COMMANDS
-from bench.config.drives.registry import drive_kinds
+from bench.config.drives.registry import drive_kind
 from tests.docs.documents import DOCUMENTS, GENERATED, commands_in, name_of, text_of
 from tests.paths import ROOT
 
@@ -97,17 +97,34 @@ def test_commands_and_options_are_there(place: str, line: str) -> None:
     assert {word.partition("=")[0] for word in words if word.startswith("--")} <= known, place
 
 
-GUIDES = [name_of(ROOT / "docs" / "how-to" / f"{kind}.md") for kind in drive_kinds() if kind != "sim"]
+OUR_KINDS = sorted({file.parent.name for file in (ROOT / "bench" / "drives").glob("*/kind.py")} - {"sim"})
+REAL_DRIVE = "docs/how-to/real-drive.md"
 
 
-@pytest.mark.parametrize("guide", [*GUIDES, "docs/how-to/real-drive.md"])
+def test_the_guide_says_how_fast_the_first_trial_is() -> None:
+    assert "out at 0.5 to 1 rad/s, back at `motion.speed_rad_s`" in " ".join(text_of(ROOT / REAL_DRIVE).split())
+
+
+@pytest.mark.parametrize("guide", [*(f"docs/how-to/{kind}.md" for kind in OUR_KINDS), REAL_DRIVE])
 def test_the_first_trial_on_a_real_drive_is_slow(guide: str) -> None:
     trials = [line for place, line in COMMAND_LINES if place == guide and " run steps" in line]
-    assert trials
-    assert all("--fastest-rad-s 1" in line for line in trials)
+    assert trials, f"{guide} has no first trial: a line with `friction-bench ... run steps`"
+    assert all("--fastest-rad-s 1" in line for line in trials), trials
     text = text_of(ROOT / guide)
-    assert "out at 0.5 to 1 rad/s, back at `motion.speed_rad_s`" in " ".join(text.split())
-    assert "tand clear" in text
+    assert guide == REAL_DRIVE or "(real-drive.md#first-trial)" in text, f"{guide} does not link to the first trial"
+    assert "stand clear" in text.lower(), f"{guide} tells nobody to stand clear"
+
+
+@pytest.mark.parametrize("kind", OUR_KINDS)
+def test_a_kind_of_drive_stands_in_both_tables_of_hardware(kind: str) -> None:
+    """A kind without a watchdog is marked in both."""
+    assert (ROOT / "examples" / kind / "bench.toml").is_file()
+    unwatched = not all(way.has_watchdog for way in drive_kind(kind).conformance)
+    for file, name in (("README.md", f"(`{kind}`)"), (REAL_DRIVE, f"]({kind}.md)")):
+        cells = [line.split("|")[1] for line in text_of(ROOT / file).splitlines() if line.startswith("|")]
+        found = [cell for cell in cells if name in cell]
+        assert len(found) == 1, f"one row of {file} has to begin with {name}"
+        assert ("no watchdog" in found[0]) is unwatched, found[0]
 
 
 def test_the_release_is_described() -> None:

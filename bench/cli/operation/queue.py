@@ -128,11 +128,11 @@ def given_parameters(name: str, words: list[str]) -> "Values":
 
     kind = find_kind(name)
     known = kind.parameters.model_json_schema().get("properties", {})
-    found: dict[str, str | None] = {}
+    found: dict[str, list[str]] = {}
     for word in words:
         key, equals, value = word.partition("=")
         key = key.removeprefix("--").replace("-", "_")
         if not equals or key not in known:
             raise typer.BadParameter(f"found '{word}'; wanted NAME=VALUE, NAME one of {', '.join(known)}")
-        found[key] = value
+        found.setdefault(key, []).append(value)
     return given(kind, found)

@@ -69,7 +69,7 @@ def _kinds() -> None:
 def _run(
     context: typer.Context,
     kind: "ExperimentKind",
-    options: dict[str, str | None],
+    options: dict[str, list[str]],
     operator: str | None,
     note: str | None,
     tags: str | None,

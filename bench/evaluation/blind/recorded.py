@@ -11,7 +11,6 @@ import numpy as np
 from bench.config.configuration import BenchConfiguration
 from bench.config.rig import Rig
 from bench.errors import ExperimentError, LimitError
-from bench.evaluation.blind.imperfections import DELAY_S, worn
 from bench.evaluation.blind.items import FAMILIES, PERIOD_S, Item, draw_item, protocol_of, wanted_ratio
 from bench.evaluation.challenge.hidden_plant import MECHANISMS, DrawnPlant
 from bench.evaluation.challenge.owner import bench_of, rig_of
@@ -33,6 +32,11 @@ SCALINGS = 7  # sizes that are tried for the r that is wanted
 NEAR = 1.25  # factor: an r so near to the wanted one will do
 LARGEST_STEP = 2.0  # of the logarithm of a size at once
 LEAST_RATIO = 0.01  # a smaller r is none
+
+# faults of the line; the plant itself has the delay
+LOST = (0.002, 0.02)  # share of the rows
+JITTER = (0.02, 0.2)  # standard deviation, share of the period
+DELAY_S = (5e-4, 3e-3)
 
 
 @dataclass(frozen=True)
@@ -202,3 +206,18 @@ def _with_plant(configuration: BenchConfiguration, tables: Values) -> BenchConfi
     values = configuration.model_dump()
     values["drive"]["plant"] = {**values["drive"]["plant"], **tables}
     return BenchConfiguration.model_validate(values)
+
+
+def worn(recordings: Sequence[Recording], random: np.random.Generator) -> list[Recording]:
+    """The recordings with rows lost and time stamps jittered, by amounts drawn once for all of them."""
+    lost, jitter = float(random.uniform(*LOST)), float(random.uniform(*JITTER))
+    return [_worn(recording, lost, jitter, random) for recording in recordings]
+
+
+def _worn(recording: Recording, lost: float, jitter: float, random: np.random.Generator) -> Recording:
+    time_s = recording.channels["time_s"]
+    period_s = float(np.median(np.diff(time_s)))
+    stamps = time_s + jitter * period_s * np.clip(random.standard_normal(len(time_s)), -2.0, 2.0)
+    kept = random.random(len(time_s)) >= lost
+    channels = {name: values[kept] for name, values in (recording.channels | {"time_s": stamps}).items()}
+    return Recording(recording.name, recording.kind, recording.conditions, channels, recording.events)

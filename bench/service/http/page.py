@@ -7,6 +7,7 @@ new ones when any has changed. Without a fingerprint they are served as they are
 import gzip
 import hashlib
 import importlib.util
+import json
 import mimetypes
 import os
 from collections.abc import Mapping
@@ -17,11 +18,14 @@ from fastapi import APIRouter, FastAPI, HTTPException, Request, Response
 from fastapi.responses import FileResponse, HTMLResponse
 from starlette.staticfiles import StaticFiles
 
+from bench.config.channels import CHANNELS
+from bench.config.quantities import UNITS
 from bench.errors import ConfigurationError
 from bench.service.http.api_router import LateRoute
 
 WEB = Path(__file__).resolve().parents[3] / "web"
 PLOTLY = "plotly.min.js"
+NAMES = '<script type="application/json" id="names">'
 FINGERPRINT_LENGTH = 12
 FOR_GOOD = "public, max-age=31536000, immutable"
 FRESH = "no-cache"
@@ -69,6 +73,17 @@ def compressed(path: Path, fingerprinted: str) -> bytes:  # noqa: ARG001 - a cha
     return gzip.compress(path.read_bytes(), mtime=0)
 
 
+def names() -> str:
+    """What the page calls channels and units, by the one table of each: JSON."""
+    return json.dumps(
+        {
+            "units": UNITS,
+            "channels": {name: channel.label for name, channel in CHANNELS.items()},
+            "plotted": [name for name, channel in CHANNELS.items() if channel.plotted],
+        }
+    )
+
+
 @router.get("/")
 def index() -> HTMLResponse:
     """The page; its modules are asked for at once, not one after the other as they name each other."""
@@ -78,6 +93,7 @@ def index() -> HTMLResponse:
     modules = [name for name in files if name.startswith("modules/")]
     preload = "\n".join(f'  <link rel="modulepreload" href="/static/{known}/{name}">' for name in modules)
     text = text.replace('"/static/', f'"/static/{known}/').replace("</head>", f"{preload}\n</head>")
+    text = text.replace(f"{NAMES}{{}}", NAMES + names())
     return HTMLResponse(text, headers={"Cache-Control": FRESH})
 
 

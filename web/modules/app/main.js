@@ -1,10 +1,10 @@
 // The page: which view is shown, and what is there in every view (status, STOP, what the bench asks for, token, units).
 
 import { benchView } from "../bench/bench.js";
-import { commissionView } from "../commission/commission.js";
+import { commission } from "../commission/commission.js";
 import { homeView } from "../home/home.js";
 import { learnView } from "../learn/learn.js";
-import { numbersView } from "../numbers/numbers.js";
+import { numbers } from "../numbers/numbers.js";
 import { queueView } from "../queue/view.js";
 import { studiesView } from "../studies/studies.js";
 import { beginTour, tour } from "../tour/tour.js";
@@ -20,16 +20,16 @@ import { statusBar } from "./status.js";
 import { stopButton } from "./stop.js";
 import { tokenForm } from "./token.js";
 
-// by the name in the address; a view with a tab stands in the row at the top
+// by the name in the address; a view with a tab stands in the row at the top, one with a text is linked to by the view `from`
 const VIEWS = {
   "": { open: homeView },
   home: { open: homeView },
   bench: { open: benchView, tab: "Bench" },
-  commission: { open: commissionView },
+  commission,
   queue: { open: queueView, tab: "Queue" },
   trials: { open: trialsView, tab: "Trials" },
   study: { open: studiesView, tab: "Study" },
-  numbers: { open: numbersView },
+  numbers,
   compare: { open: versusView },
   learn: { open: learnView, tab: "Learn" },
   tour: { open: beginTour },
@@ -48,11 +48,15 @@ function show() {
   leave();
   const place = replace(document.getElementById("view"));
   place.className = "";
-  leave = (Object.hasOwn(VIEWS, view) ? VIEWS[view].open : unknownView)(place, { live, state, rest, query }) ?? (() => {});
+  leave = (Object.hasOwn(VIEWS, view) ? VIEWS[view].open : unknownView)(place, { live, state, rest, query, links: linksFrom(view) }) ?? (() => {});
 }
 
 function tabs(row) {
   row.prepend(...Object.entries(VIEWS).filter(([, { tab }]) => tab).map(([name, { tab }]) => h("a", { href: `#${name}` }, tab)));
+}
+
+function linksFrom(view) {
+  return Object.entries(VIEWS).filter(([, { from }]) => from === view).map(([name, { text }]) => h("p", {}, h("a", { href: `#${name}` }, text)));
 }
 
 function unknownView(place) {

@@ -17,7 +17,7 @@ export function benchView(place, bench) {
   const { live, state } = bench;
   const [start, lease, queue, drive, fault, plot] = ["div", "div", "div", "div", "div", "div"].map((tag) => h(tag));
   replace(place, h("div", { class: "columns" }, panel("Start an experiment", lease, h("div", { class: "gap" }), start), h("div", { class: "wide" }, panel("Live", plot)),
-    panel("Queue", queue), panel("Drive and limits", drive, fault, h("p", {}, h("a", { href: "#commission" }, "Commission a joint of your own")), h("p", {}, h("a", { href: "#numbers" }, "Big numbers, for a tablet beside the bench")))));
+    panel("Queue", queue), panel("Drive and limits", drive, fault, bench.links)));
   const waiting = queuePanel(queue);
   const form = startForm(start, live, () => waiting.refresh(), () => bringIntoSight(plot.closest(".panel")));
   const refresh = () => attempt(drive, async () => replace(drive, description(await get("/bench"))));

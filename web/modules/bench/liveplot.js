@@ -3,28 +3,31 @@
 import { poweredOff, readingNote } from "../app/state.js";
 import { liveJoint } from "../joint/livejoint.js";
 import { Chart } from "../plots/chart.js";
+import { SERIES } from "../ui/colours.js";
 import { h, replace } from "../ui/dom.js";
-import { axisTitle, fixed, nameOf, number } from "../ui/format.js";
+import { axisTitle, fixed, nameOf, number, PLOTTED, unitOf } from "../ui/format.js";
 import { allShown, shownUnit } from "../ui/units.js";
 import { LatestTrials } from "./latesttrials.js";
 import { around, HALF, LOAD, loadBands, newest } from "./load.js";
 import { markLegend, marksOf } from "../plots/marks.js";
 
 const SECONDS = [["0", "all of the trial"], ["5", "last 5 s"], ["20", "last 20 s"]];
-const CHANNELS = [
-  { name: "target_rad", text: "target", unit: "rad", colour: "orange", dash: [5, 4] },
-  { name: "position_rad", text: "position", unit: "rad", colour: "blue" },
-  { name: "velocity_rad_s", text: "speed", unit: "rad/s", colour: "green" },
-  { name: "current_a", text: "current", unit: "A", colour: "red" },
-  { name: "current_estimate_a", text: "current from duty", unit: "A", colour: "orange" },
-  { name: "current_load_a", text: "load current (band: 95 %)", unit: "A", colour: "sky", width: 3 },
-  { name: "duty", text: "duty", unit: "", colour: "purple" },
-  { name: "supply_v", text: "supply", unit: "V", colour: "orange", off: true },
-  { name: "temperature_c", text: "temperature", unit: "°C", colour: "red", off: true },
+const DRAWN = [
+  { name: "target_rad", colour: "orange", dash: [5, 4] },
+  { name: "position_rad", colour: "blue" },
+  { name: "velocity_rad_s", colour: "green" },
+  { name: "current_a", colour: "red" },
+  { name: "current_estimate_a", colour: "orange" },
+  { name: "current_load_a", text: "load current (band: 95 %)", colour: "sky", width: 3 },
+  { name: "duty", colour: "purple" },
+  { name: "supply_v", colour: "orange", off: true },
+  { name: "temperature_c", colour: "red", off: true },
 ];
+const OTHERS = PLOTTED.filter((name) => DRAWN.every((one) => one.name !== name)).map((name, at) => ({ name, colour: SERIES[at % SERIES.length] }));
+const CHANNELS = [...DRAWN, ...OTHERS].map((one) => ({ text: nameOf(one.name), unit: unitOf(one.name), ...one }));
 
 // the least that an axis spans, in SI: a joint at rest is a flat line, not its sensor's noise over the whole height
-const LEAST_SPAN = { rad: 0.05, "rad/s": 0.2, A: 0.05, "": 0.02, V: 1, "°C": 1 };
+const LEAST_SPAN = { rad: 0.05, "rad/s": 0.2, A: 0.05, "": 0.02, V: 1, degC: 1 };
 
 export function livePlot(place, { live, state }) {
   const progress = h("progress", { max: "1", value: "0", "aria-label": "Progress of the experiment" });
@@ -121,18 +124,17 @@ function sentence(run) {
 }
 
 // the steps in which readings are shown, in SI: finer ones flicker
-const STEPS = { rad: 0.001, "rad/s": 0.005, A: 0.001, "": 0.001, V: 0.01, "°C": 0.1 };
-const READINGS = [["position", "position_rad", "rad"], ["speed", "velocity_rad_s", "rad/s"], ["current", "current_a", "A"], ["duty", "duty", ""],
-  ["supply", "supply_v", "V"], ["temperature", "temperature_c", "°C"]];
+const STEPS = { rad: 0.001, "rad/s": 0.005, A: 0.001, "": 0.001, V: 0.01, degC: 0.1 };
+const READINGS = ["position_rad", "velocity_rad_s", "current_a", "duty", "supply_v", "temperature_c"];
 
 // what is true only while the power is on: of a joint that coasts or rests, the last values say nothing
 const WITH_POWER = ["velocity_rad_s", "current_a", "duty"];
 
 // off: the power was taken off after this reading
 export function readingsOf(values, load, off) {
-  const known = READINGS.filter(([, name]) => values && values[name] !== null && values[name] !== undefined);
-  const label = (text, name) => `${off && WITH_POWER.includes(name) ? "last " : ""}${name === "current_a" ? currentName(values) : text}`;
-  const read = known.map(([text, name, unit]) => [label(text, name), readingText(values[name], unit)]);
+  const known = READINGS.filter((name) => values && values[name] !== null && values[name] !== undefined);
+  const label = (name) => `${off && WITH_POWER.includes(name) ? "last " : ""}${name === "current_a" ? currentName(values) : nameOf(name)}`;
+  const read = known.map((name) => [label(name), readingText(values[name], unitOf(name))]);
   return [...read, ...(load ? [["load current, as last found", load]] : [])].map(([text, value]) => h("div", {}, h("dt", {}, text), h("dd", {}, value)));
 }
 

@@ -12,7 +12,9 @@ import { isPowered, stepDrawing } from "./stepdrawing.js";
 
 const EVERY_MS = 400;
 
-export function commissionView(place, bench) {
+export const commission = { open: commissionView, from: "bench", text: "Commission a joint of your own" };
+
+function commissionView(place, bench) {
   const [rail, screen, found, answer] = [h("ol", { class: "way", "aria-label": "Steps" }), h("div"), h("div"), h("div")];
   const [joint, motion] = [h("div", { class: "step-joint" }), h("p", { class: "soft motion-now", role: "status" })];
   const picture = h("div", {}, joint, motion);

@@ -7,9 +7,11 @@ import { eachFrame, liveJoint, rowOf } from "../joint/livejoint.js";
 import { h, replace } from "../ui/dom.js";
 import { duration } from "../ui/format.js";
 
-export function numbersView(place, { live, state }) {
+export const numbers = { open: numbersView, from: "bench", text: "Big numbers, for a tablet beside the bench" };
+
+function numbersView(place, { live, state }) {
   const [joint, doing, note] = [h("div", { class: "numbers-joint" }), h("p", { class: "numbers-doing", role: "status" }), h("p", { class: "soft numbers-note" })];
-  const [angle, current, load, left] = ["angle", "current", "load current", "time left"].map((text) => {
+  const [angle, current, load, left] = ["angle", currentName(), "load current", "time left"].map((text) => {
     const value = h("dd", {}, "–");
     const name = h("dt", {}, text);
     return { name, value, element: h("div", {}, name, value) };

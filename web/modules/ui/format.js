@@ -2,26 +2,33 @@
 
 import { shownUnit, titled, withShownUnit } from "./units.js";
 
-const UNITS = [
-  ["_rad_s", "rad/s"], ["_m_s", "m/s"], ["_n_m", "N m"], ["_kg", "kg"], ["_rad", "rad"], ["_deg", "°"], ["_hz", "Hz"], ["_ms", "ms"],
-  ["_s", "s"], ["_a", "A"], ["_v", "V"], ["_c", "°C"], ["_m", "m"], ["_n", "N"], ["_g", "g"],
-];
+// written into the page by the service: units by the ending of a name, and what the channels are called
+const NAMES = JSON.parse(document.getElementById("names").textContent);
+const ENDINGS = Object.keys(NAMES.units).sort((one, other) => other.length - one.length);
+
+function endingOf(name) {
+  return ENDINGS.find((ending) => name.endsWith(ending)) ?? "";
+}
 
 export function unitOf(name) {
-  const found = UNITS.find(([suffix]) => name.endsWith(suffix));
-  return found ? found[1] : "";
+  return NAMES.units[endingOf(name)] ?? "";
 }
 
-// what a channel is called on the whole page, where its name alone would not say it
-const SAID = { current_estimate: "current from duty", current_load: "load current", current_load_half_width: "load current, half of its band" };
+// channels that a plot shows unless asked otherwise
+export const PLOTTED = NAMES.plotted;
+
+// what a channel is called on the whole page, with its unit or without
+const SAID = Object.fromEntries(Object.entries(NAMES.channels).flatMap(([name, label]) => [[name, label], [bareOf(name), label]]));
+
+function bareOf(name) {
+  return name.slice(0, name.length - endingOf(name).length);
+}
 
 export function nameOf(name) {
-  const found = UNITS.find(([suffix]) => name.endsWith(suffix));
-  const bare = found ? name.slice(0, -found[0].length) : name;
-  return SAID[bare] ?? bare.replace(/\bvelocity(?=_|$)/, "speed").replaceAll("_", " ");
+  return SAID[name] ?? SAID[bareOf(name)] ?? bareOf(name).replace(/\bvelocity(?=_|$)/, "speed").replaceAll("_", " ");
 }
 
-const AXES = { rad: "angle", "rad/s": "speed", m: "position", "m/s": "speed", A: "current", "N m": "torque", N: "force", V: "supply", "°C": "temperature" };
+const AXES = { rad: "angle", "rad/s": "speed", m: "position", "m/s": "speed", A: "current", "N m": "torque", N: "force", V: "supply", degC: "temperature" };
 
 // title of an axis for all that has an SI unit, in the unit that is shown
 export function axisTitle(si, other = "") {
