@@ -8,6 +8,7 @@ from scipy.stats import spearmanr
 from compensator.lab.diagnosis.alien_effort import alien_effort
 from compensator.lab.model.fitted import Fit
 from compensator.lab.model.held_out_error import LEAST_OF_EFFORT, rms
+from compensator.lab.model.intervals import standard_errors
 from compensator.lab.model.linear import solve, solve_without
 from compensator.lab.recordings.processing import SATURATED_DUTY, Signals
 from compensator.lab.recordings.recording import BoolArray, FloatArray
@@ -22,6 +23,8 @@ UNLIKE = 2.0  # times what the median of the other trials leaves: less is what t
 FEWEST_ROWS_OF_ODD = 5  # of a trial: an error of four times the others' is no chance in so many
 TENFOLD = 10.0  # what loads seem to weigh of what they are said to, or the reverse: more is another unit
 WORSE = 1.5  # times the error that the loads as told leave, for that to be sure
+ABOUT_TOLD = 0.25  # of an arm's weight: masses and centres are known so well at the least
+SURELY = 3.0  # standard deviations
 ORDERED = 0.95  # rank correlation of two conditions over the trials
 WARMER_K = 2.0
 MOST_NAMES = 3
@@ -42,6 +45,7 @@ def data_problems(fit: Fit) -> list[str]:
 def lesser_problems(fit: Fit) -> list[str]:
     """Those with which effects can be ranked: what loads and warmth do together, and trials that are odd or idle."""
     return [
+        *_arm_weight(fit),
         *_half_told_loads(fit),
         *_ordered_conditions(fit),
         *_odd_trials(fit),
@@ -114,6 +118,24 @@ def _load_units(fit: Fit) -> list[str]:
     return [
         f"the loads seem to weigh {seems}: check the units of {channels} (mA for A makes 1000), of load_kg (g for kg "
         "makes 0.001), of arm_m and of position (degrees), and which trial had which load"
+    ]
+
+
+def _arm_weight(fit: Fit) -> list[str]:
+    """An arm that weighs otherwise than the rig says, where the effort is known in N m."""
+    told = fit.dataset.facts.arm_moment_n_m
+    firsts = np.cumsum([0, *(len(term.coefficients) for term in fit.terms)])
+    swung = [first for first, term in zip(firsts, fit.terms, strict=False) if term.effect.by_angle and term.kept[0]]
+    if not told or not swung or fit.dataset.effort_definition.unit != "N m":
+        return []
+    found = float(np.linalg.norm(fit.coefficients[swung]))
+    error = float(np.linalg.norm(standard_errors(fit)[0][swung]))
+    if not abs(found - told) > ABOUT_TOLD * told + SURELY * error:
+        return []
+    return [
+        f"the arm weighs {found:.3g} N m at 90 degrees by the model, and {told:.3g} N m by the rig (arm.mass_kg x "
+        "arm.centre_of_mass_m x g): check these; if they are right, something else goes by the position, as a spring "
+        "or a cable does"
     ]
 
 

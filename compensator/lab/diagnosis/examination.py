@@ -24,6 +24,7 @@ from compensator.lab.screening.evidence import Evidence, Screening, among_all, k
 
 EXPLAINED_BY_RIVAL = 0.5  # share of its evidence that a rival loses once the best effect is in the model
 FORMULA_SHARE = 0.6  # of a free curve's evidence, or of the best formula's: one that reaches less is not the right one
+ALL = 1.0 - 1e-9  # of a direction, but for rounding
 NAMED_ALONE = 3.0  # d' below which a name given alone would be wrong once in four (docs/explanation/diagnosis.md)
 
 
@@ -57,8 +58,8 @@ def examine(fit: Fit, gathered: Candidates, screening: Screening, screened: list
     found: list[Candidate] = []
     for index, item in enumerate(evidence):
         alike = _alike(item, spans)
-        rivals = {*_rivals(index, evidence, afters, given[index]), *_too_near(item, possible, alike)}
-        rivals |= _hidden(fit, item.block.name)
+        rivals = _rivals(index, evidence, afters, given[index]) & alike.keys()
+        rivals |= _too_near(item, possible, alike) | _hidden(fit, item.block.name)
         found.append(
             Candidate(
                 effect=effect_named(item.block.name),
@@ -132,11 +133,14 @@ def _spans(gathered: Candidates) -> list[tuple[str, FloatArray, bool]]:
 def _alike(item: Evidence, spans: list[tuple[str, FloatArray, bool]]) -> dict[str, float]:
     """How much of what an effect explains every other one could explain, as a correlation: of a sign that it can have.
 
-    What grows faster than the speed and what grows more slowly are told apart by nothing else.
+    What grows faster than the speed and what grows more slowly are told apart by nothing else. One that has all of the
+    effect's columns, and more, is no rival: whether more is needed, the score says, which has a price for it.
     """
     alike: dict[str, float] = {}
+    own = item.block.columns.shape[1]
     for name, basis, positive in spans:
-        if name != item.block.name:
+        contains = basis.shape[1] > own and np.linalg.norm(basis.T @ item.direction) >= ALL
+        if name != item.block.name and not contains:
             shares = basis.T @ item.direction
             found = min(float(np.linalg.norm(np.maximum(shares, 0.0) if positive else shares)), 1.0)
             alike[name] = max(alike.get(name, 0.0), found)

@@ -322,7 +322,7 @@ class Effect:
         by_position: it goes by the position itself, which a shaft that turns on and on does not have.
         by_angle: it goes by the angle of an arm, which a linear joint does not have.
         goes_round: its shape is an order of the position, as a force or against the motion: one that its shapes lack
-            is found where no gear ratio tells which these are; None: it has no such shape.
+            is found by a periodogram over the position; None: it has no such shape.
         told: (facts, shape) -> whether the owner tells of so much of it that a shape like this is not missing.
         searched: shape -> whether a search for the best one goes there; a scan may, to see what fits better beyond.
         holds: (shape that it takes in a model, what it comes to over all friction there) -> whether that is this effect

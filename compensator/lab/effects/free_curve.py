@@ -1,7 +1,8 @@
 """A free curve over a measured variable: a provisional term, for what is missing and has no formula yet.
 
 It names a variable, not a mechanism: it fills the gap in the model until somebody knows the physics. The curve is
-linear between seven knots, and zero at the first, where offset (or Coulomb friction, for one against the motion) holds.
+linear between seven knots, and zero at the first, where offset (or Coulomb friction, for one against the motion) holds;
+after a reversal at the last, since Coulomb friction is what holds far from there.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,7 +17,7 @@ from compensator.lab.recordings.recording import FloatArray
 
 PREFIX, FORCE, AGAINST_MOTION, TIMES_SPEED = "curve_of_", "", " against motion", " times speed"
 KNOTS = 7
-_ORDINALS = ("second", "third", "fourth", "fifth", "sixth", "seventh")
+_ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +28,11 @@ class _Variable:
     of: Callable[[Motion], FloatArray]
     builds_on: Literal["load", "effort"] | None = None
     rows: Literal["sliding", "moving"] = "sliding"
+
+    @property
+    def zero_at(self) -> int:
+        """The knot at which its curves are zero."""
+        return KNOTS - 1 if self.rows == "moving" else 0
 
 
 _VARIABLES = {
@@ -113,15 +119,15 @@ def _curve(name: str, variable: str, way: str) -> Effect:
             "cover, and says which variable to look at, not why."
         ),
         equation=rf"f(x){factor}",
-        columns=lambda motion, knots: _hats(over.of(motion), knots) * WAYS[way](motion),
-        parameters=tuple(Parameter(f"at the {one} knot", unit) for one in _ORDINALS),
+        columns=lambda motion, knots: _hats(over.of(motion), knots, over.zero_at) * WAYS[way](motion),
+        parameters=tuple(Parameter(f"at the {one} knot", unit) for one in np.delete(_ORDINALS, over.zero_at)),
         driver=variable,
         excited_by=f"trials over the whole range of {over.title}",
         source="a linear spline: model-error modelling (Ljung 1999)",
         shapes=lambda motion: [_knots([motion], over)],
         shape_over=lambda motions: _knots(motions, over),
-        shape_names=tuple(f"{one} knot" for one in ("first", *_ORDINALS)),
-        shape_units=("as the variable",) * (len(_ORDINALS) + 1),
+        shape_names=tuple(f"{one} knot" for one in _ORDINALS),
+        shape_units=("as the variable",) * KNOTS,
         channels=("temperature_c",) if variable == "temperature" else (),
         varies_with="session_s" if variable == "session_time" else None,
         builds_on=over.builds_on,
@@ -131,8 +137,9 @@ def _curve(name: str, variable: str, way: str) -> Effect:
 
 
 def _knots(motions: Sequence[Motion], over: _Variable) -> Shape:
-    """Quantiles of the variable over all trials; evenly spaced where it has a few values only."""
-    values = np.concatenate([over.of(motion) for motion in motions])
+    """Quantiles of the variable over all motion; evenly spaced where it has a few values only."""
+    moving = [np.abs(motion.velocity) > motion.slow for motion in motions]
+    values = np.concatenate([over.of(motion)[moves] for motion, moves in zip(motions, moving, strict=True)])
     values = values[np.isfinite(values)]
     if len(values) == 0:
         return tuple(np.arange(float(KNOTS)))
@@ -142,6 +149,6 @@ def _knots(motions: Sequence[Motion], over: _Variable) -> Shape:
     return tuple(places.tolist())
 
 
-def _hats(values: FloatArray, knots: Shape) -> FloatArray:
-    """Linear hats on all knots but the first, shape (k, n); the outer one goes on beyond its knot."""
-    return np.array([np.interp(values, knots, unit) for unit in np.eye(len(knots))[1:]])
+def _hats(values: FloatArray, knots: Shape, zero_at: int) -> FloatArray:
+    """Linear hats on all knots but one, shape (k, n); the outer ones go on beyond their knots."""
+    return np.array([np.interp(values, knots, unit) for unit in np.delete(np.eye(len(knots)), zero_at, axis=0)])

@@ -78,13 +78,13 @@ def line_of(gathered: Candidates, most: float = PLAIN.line, most_growing: float 
 
 
 def with_found_order(gathered: Candidates) -> Candidates:
-    """The candidates, and what comes back with the position for sure, where no gear ratio tells how often it may.
+    """The candidates, and what comes back with the position for sure: wheels between motor and joint have any order.
 
     Each effect that goes round is one at that order, too, and pays for all that were looked at.
     """
     dataset = gathered.fit.dataset
     first = {block.name: block for block in reversed(gathered.named) if effect_named(block.name).goes_round}
-    line = line_of(gathered) if first and dataset.facts.gear_ratio is None else None
+    line = line_of(gathered) if first else None
     if line is None or line.kind == GROWING:
         return gathered
     shape = (line.rad_per_position,)

@@ -25,7 +25,7 @@ from compensator.lab.rows.dataset import FEWEST_ROWS, Trial
 from compensator.lab.screening.base import Base
 from compensator.lab.screening.candidates import WITH_CHAIN, Candidates
 
-LEAST_HZ = 0.25  # what is slower turns less than once in a trial of some seconds
+FEWEST_TURNS = 2.0  # in a usual trial: of fewer, a drift would seem to be a part
 BAND = 0.9  # of the cut-off
 REACH_HZ = (0.3, 1.0)  # of a line in a trial of some seconds, and of noise that is smooth
 FEWEST_TRIALS = 4
@@ -98,7 +98,8 @@ def _line(gathered: Candidates, carrier: FloatArray, of_voltage: bool, most: flo
     times_s = [time_s[own] for own in trials]
     longest_s = max(float(own[-1] - own[0]) for own in times_s)
     highest_hz = BAND * min(dataset.cutoff_hz, *(0.5 / float(np.median(np.diff(own))) for own in times_s))
-    at_hz = np.arange(LEAST_HZ, highest_hz, 1.0 / (WIDTH * longest_s))
+    lowest_hz = FEWEST_TURNS / float(np.median([own[-1] - own[0] for own in times_s]))
+    at_hz = np.arange(lowest_hz, highest_hz, 1.0 / (WIDTH * longest_s))
     if len(at_hz) <= 2 * WIDTH:
         return None
     motions = motions_of([dataset.trials[one] for one in numbers])
@@ -107,7 +108,7 @@ def _line(gathered: Candidates, carrier: FloatArray, of_voltage: bool, most: flo
     if not peaks.any():
         return None
     best = int(np.argmax(np.where(peaks, told.whole, 0.0)))
-    independent = max((highest_hz - LEAST_HZ) * longest_s, 1.0)
+    independent = max((highest_hz - lowest_hz) * longest_s, 1.0)
     chance = independent * chance_over_noise(told.gains[:, best], told.shares, float(told.known_from[best]))
     return Swing(float(at_hz[best]), of_voltage) if chance <= most else None
 

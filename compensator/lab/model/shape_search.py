@@ -89,28 +89,31 @@ class _Search:
         return float(shares @ shares)
 
     def scan(self) -> Shape:
-        """The best shape of the effect's grid, or an order beyond it where nobody tells which there can be."""
-        if self._effect.goes_round is not None:
-            path = Path.of(self._dataset, self._rows, self._weight[:, 0])
-            self._grid = path.shown(self._grid)
+        """The best shape of the effect's grid, or an order between or beyond, of a wheel that nobody tells of."""
+        path = None if self._effect.goes_round is None else Path.of(self._dataset, self._rows, self._weight[:, 0])
+        self._grid = self._grid if path is None else path.shown(self._grid)
         powers = [self.explained(columns) for columns in self._columns()]
         best = int(np.argmax(powers))
-        beyond = self._beyond_grid()
-        if beyond is not None and self.explained(self._dataset.columns(self._effect, beyond)) > powers[best]:
-            return beyond
-        return self._grid[best]
+        other = None if path is None else self._off_grid(path, powers[best])
+        return self._grid[best] if other is None else other
 
-    def _beyond_grid(self) -> Shape | None:
-        """The order above the grid's that explains most; None where the gear ratio is known, or no row shows one."""
+    def _off_grid(self, path: Path, power: float) -> Shape | None:
+        """The order of all that explains most, where it is worth so many tries (BIC); None where the grid's best is.
+
+        Args:
+            path: of the rows.
+            power: that the best of the grid explains.
+        """
         kind = self._effect.goes_round
-        if kind is None or self._dataset.facts.gear_ratio is not None:
-            return None
-        path = Path.of(self._dataset, self._rows, self._weight[:, 0])
-        orders = path.orders[path.orders > max(self._grid)[0]]
-        if not len(orders):
+        orders = path.orders[path.orders > self._grid[0][0]]
+        if kind is None or not len(orders):
             return None
         best = float(orders[np.argmax(path.scanned(self._basis, self._rest, orders, (kind,))[kind])])
-        return (path.refined(self._basis, self._rest, best, kind),)
+        shape = (path.refined(self._basis, self._rest, best, kind),)
+        left = float(self._rest @ self._rest)
+        leaves = left - self.explained(self._dataset.columns(self._effect, shape))
+        gained = independent_rows(self._rest) * np.log((left - power) / max(leaves, TINY * left))
+        return shape if gained > 2.0 * np.log(len(orders) / len(self._grid)) else None
 
     def grow(self) -> Shape:
         """One order after the other, each the best beside those before it, while the rows pay for it (BIC)."""

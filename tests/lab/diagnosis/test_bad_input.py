@@ -210,6 +210,20 @@ def test_why_a_trial_is_not_used(channel, value, words):
     assert any(words in problem for problem in lesser_problems(fit))
 
 
+@pytest.mark.parametrize(("stiffness", "told_n_m", "words"), [
+    (0.0, 0.25, ""),
+    (0.0, 0.3, ""),  # data sheets are off by as much
+    (0.0, 0.15, "the arm weighs 0.25 N m at 90 degrees by the model, and 0.15 N m by the rig"),
+    (0.25, 0.25, "N m by the rig (arm.mass_kg x arm.centre_of_mass_m x g): check these; if they are right, something"),
+])  # fmt: skip
+def test_an_arm_that_weighs_otherwise_than_the_rig_says_is_told(stiffness, told_n_m, words):
+    made = recordings(Joint(extra=lambda x: stiffness * x.q), seed=3)
+    dataset = make_dataset(made, replace(FACTS, arm_moment_n_m=told_n_m), Processing())
+    found = [one for one in lesser_problems(fit_model(dataset, default_effects(FACTS))) if "the arm weighs" in one]
+    assert len(found) == bool(words)
+    assert not words or words in found[0]
+
+
 def test_a_coarse_sensor_is_told_where_a_longer_trial_would_not_help():
     made = recordings(trials=plans((0.0,)), bench=Bench(duration_s=30.0, quantum=2.0 * np.pi / 12.0), seed=3)
     with pytest.raises(UnusableDataError, match="the position resolves no slower motion: use a sensor of more counts"):

@@ -82,6 +82,19 @@ def test_what_the_free_scale_of_gravity_hides_is_of_the_class_that_is_named():
     assert "back_driving_friction" not in diagnosis_of_planted("weight_friction").classes[0]
 
 
+def test_an_effect_that_has_all_of_anothers_columns_and_more_is_no_rival_of_it():
+    """Any spring is a hardening one whose stiffness does not change: its score has the price of what it adds."""
+    linear, hardens = (
+        diagnosis_of(recordings(Joint(extra=law), seed=3)) for law in (PLANTED["spring"], lambda x: 0.05 * x.q**3)
+    )
+    assert linear.classes[0] == ("spring",)
+    assert "hardening_spring" in {one.effect.name for one in linear.candidates}
+    assert hardens.candidates[0].effect.name == "hardening_spring"
+    assert hardens.candidates[0].after < 0.95 * next(
+        one.after for one in hardens.candidates if one.effect.name == "spring"
+    )
+
+
 def bristles(x, distance_rad: float = 0.01) -> np.ndarray:
     """Coulomb friction of 0.08 N m that comes up over some travel, less the friction that is there at once."""
     state, states = 0.0, []

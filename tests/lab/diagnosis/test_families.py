@@ -108,8 +108,8 @@ def test_in_steady_sliding_a_name_must_hold_in_the_model_that_would_be_had(monke
 @pytest.mark.parametrize(
     ("extra", "cannot_be", "verdict", "first"),
     [
-        (lambda x: 0.02 * x.q, "spring", "missing", "cogging"),
-        (lambda x: 0.02 * np.sin(3.0 * x.q), "cogging", "missing", "spring"),  # it helps on other trials
+        (lambda x: 0.02 * x.q, "spring", "missing", "hardening_spring"),
+        (lambda x: 0.02 * np.sin(3.0 * x.q), "cogging", "missing", "hardening_spring"),  # it helps on other trials
     ],
 )
 def test_what_does_not_hold_leaves_its_place_to_the_next(monkeypatch, extra, cannot_be, verdict, first):

@@ -74,7 +74,7 @@ def test_damping_that_differs_along_the_path_is_offered_as_a_curve_times_the_spe
 
 def test_its_knots_are_of_all_trials():
     """Not of the first one, which may be cold."""
-    cold, warm = (np.full(100, temperature) for temperature in (20.0, 40.0))
+    cold, warm = (np.full(41, temperature) for temperature in (20.0, 40.0))
     effect = effect_named("curve_of_temperature")
     motions = [replace(_motion(), temperature_c=values) for values in (cold, warm)]
     (knots,) = effect.grid(motions)
@@ -118,3 +118,18 @@ def test_a_name_needs_no_curve():
     made = recordings(Joint(extra=lambda x: 0.02 * np.abs(x.v)), seed=3)
     fit = fit_model(make_dataset(made, FACTS, Processing()), DEFAULT)
     assert provisional(fit, diagnose(fit)) is None
+
+
+def test_a_curve_after_reversals_leaves_coulomb_friction_to_the_motion_far_from_them():
+    """Most of the time the joint stands: knots there, and no row, would make the curve all of the dry friction."""
+    effect, moment = effect_named("curve_of_since_reversal_against_motion"), _motion()
+    travel = moment.strokes.travel
+    knots = tuple(np.linspace(0.0, 0.7 * travel.max(), 7))
+    assert effect.columns(moment, knots)[:, travel > knots[-1]] == pytest.approx(0.0)
+    assert effect.columns(moment, knots)[0] == pytest.approx(
+        np.clip(1.0 - travel / knots[1], 0.0, 1.0) * moment.direction
+    )
+    assert effect.parameters[0].name == "at the first knot"
+    stands = replace(moment, velocity=np.where(np.arange(41) < 30, 0.0, moment.velocity))
+    (places,) = effect.grid([stands])
+    assert places[0] == travel[30:][np.abs(moment.velocity[30:]) > moment.slow].min()

@@ -160,6 +160,7 @@ EQUATIONS: dict[str, tuple[tuple[float, ...], Callable[[Motion], list[np.ndarray
     "viscous_temperature": ((), lambda m: [(5.0 * m.time_s - 5.0) * m.velocity]),
     "position_periodic_friction": ((7.0,), lambda m: [part * np.sign(m.velocity) for part in over_a_sample(m, 7.0)]),
     "spring": ((), lambda m: [m.position]),
+    "hardening_spring": ((), lambda m: [m.position, m.position**2, m.position**3]),
     "centre_of_mass_angle": ((), lambda m: [np.cos(m.position), WEIGHT_N_M * np.cos(m.position)]),
     "measurement_delay": ((), lambda m: [4.0 * m.velocity]),
     "effort_filter": ((0.2,), lambda m: [smoothed(m, 0.2) - predicted(m)]),

@@ -50,7 +50,7 @@ def test_a_ripple_smaller_than_a_sensor_is_linear_is_no_line(monkeypatch):
     assert line(fit) is None
 
 
-def test_a_ripple_of_an_order_that_the_catalogue_lacks_is_told():
+def test_a_ripple_of_an_order_that_no_grid_has_is_named():
     told = replace(FACTS, gear_ratio=100.0)
     fit = fitted(lambda x: RIPPLE_N_M * np.cos(ORDER * x.q + 0.4), facts=told)
     found = line(fit)
@@ -59,8 +59,8 @@ def test_a_ripple_of_an_order_that_the_catalogue_lacks_is_told():
     assert found.kind == FORCE
     assert found.share == pytest.approx(RIPPLE_N_M / np.sqrt(2.0) / np.std(fit.dataset.effort), rel=0.5)
     answer = diagnose(fit)
-    assert (answer.verdict, answer.remains) == ("nothing", True)
-    assert f"comes back with the position about {found.order:.3g} times a turn of the joint:" in answer.sentence
+    assert (answer.verdict, answer.candidates[0].effect.name) == ("missing", "cogging")
+    assert answer.candidates[0].shape[0] == pytest.approx(ORDER, rel=0.02)
 
 
 def test_a_line_does_not_hide_itself_in_the_noise_around():

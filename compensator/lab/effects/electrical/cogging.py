@@ -23,8 +23,8 @@ EFFECT = Effect(
     physics=(
         "The magnets pull the rotor towards the slots of the iron, and wheels mesh unevenly: a torque that "
         "goes round with the shaft, whatever the direction of motion. Looked for: 3 to 30 waves per turn of the joint, "
-        "as one and two are its weight's, and up to 36 per turn of the motor; where the gear ratio is not told, any "
-        "number that comes back for sure."
+        "as one and two are its weight's, up to 36 per turn of the motor where the gear ratio is told, and any number "
+        "that comes back for sure, as of a wheel between them."
     ),
     equation=r"a \cos kq + b \sin kq",
     columns=columns,

@@ -22,8 +22,8 @@ EFFECT = Effect(
     title="Position-periodic friction",
     physics=(
         "Friction that rises and falls round the turn: a bent shaft, an eccentric gear, a damaged tooth. Looked for: 1 "
-        "to 30 waves per turn of the joint, as far as the travel holds half of one, and 1 and 2 per turn of the motor; "
-        "where the gear ratio is not told, any number that comes back for sure."
+        "to 30 waves per turn of the joint, as far as the travel holds half of one, 1 and 2 per turn of the motor, "
+        "and any number that comes back for sure, as of a wheel between them."
     ),
     equation=r"(a \cos kq + b \sin kq)\,\mathrm{sgn}(\dot q)",
     columns=columns,
