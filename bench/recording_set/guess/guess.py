@@ -10,12 +10,13 @@ import numpy as np
 import tomli_w
 
 from bench.config.rig import Rig
+from bench.recording_set.conditions import KNOWN
 from bench.recording_set.formats.column_table import Columns, listed
 from bench.recording_set.guess.assign import Assigned, Said, assign
 from bench.recording_set.guess.evidence import clock_units, rises
 from bench.recording_set.guess.names import UNITS_OF, is_named_by
 from bench.recording_set.guess.units_told import Units
-from bench.recording_set.mapping import Column, Mapping
+from bench.recording_set.mapping import ConditionColumn, Mapping
 from compensator.lab.recordings.recording import CHANNELS, FloatArray
 
 SIGNED = ("duty", "voltage", "current_command", "torque", "force", "current")  # of the drive, the nearest first
@@ -75,7 +76,7 @@ class Taken:
     """What a column is taken for.
 
     Attributes:
-        channel: of the recording; "" where it is not used.
+        channel: of the recording, or condition of the trial; "" where it is not used.
         low, high: of its values, in that unit; None of text.
         outline: some of its values over time, in that unit; empty of text.
     """
@@ -135,9 +136,11 @@ def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
     units = Units([sheet.columns for sheet in sheets], assigned, known.counts_per_turn, rate_hz, known.gear_ratio)
     made = {quantity: units.column_of(quantity, names) for quantity, names in assigned.columns.items()}
     columns = {units.channel_of(quantity): column for quantity, column in made.items() if column is not None}
-    used = {name for column in columns.values() for name in column.sources}
+    conditions = {condition: _held(name, assigned) for condition, name in assigned.conditions.items()}
+    used = {name for column in columns.values() for name in column.sources} | set(assigned.conditions.values())
     mapping = Mapping(
         columns=columns,
+        conditions=conditions,
         ignore="rest" if set(assigned.names) - used else [],
         rate_hz=rate_hz,
         stamps=units.clock.stamps,
@@ -148,7 +151,7 @@ def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
     notes = list(units.notes)
     if mapping.position_from_speed:
         notes.append("no column is a position: it is the integral of the speed, from 0 in each trial")
-    taken = tuple(_taken(name, columns, units, assigned) for name in assigned.names)
+    taken = tuple(_taken(name, mapping, units, assigned) for name in assigned.names)
     unsigned = magnitude_questions([sheet.columns for sheet in sheets], assigned)
     missing = _missing(sheets, assigned, known, rate_hz)
     questions = (*assigned.questions, *units.questions, *unsigned, *missing, *_other_columns(sheets, assigned))
@@ -210,10 +213,22 @@ def _missing(sheets: Sequence[Sheet], assigned: Assigned, known: Known, rate_hz:
     return found
 
 
-def _taken(name: str, columns: MappingOf[str, Column], units: Units, assigned: Assigned) -> Taken:
+def _held(name: str, assigned: Assigned) -> ConditionColumn:
+    """How a condition is made of a column: in the unit that is said, else in that of its name."""
+    if name in assigned.said:
+        return ConditionColumn(source=name, unit=assigned.said[name].unit)
+    unit = assigned.readings[name].unit
+    return ConditionColumn(source=name, unit=None if unit is None or unit.name == unit.si else unit.name)
+
+
+def _taken(name: str, mapping: Mapping, units: Units, assigned: Assigned) -> Taken:
     low, high = units.range_of(name) or (None, None)
     outline = units.outline_of(name)
-    for channel, column in columns.items():
+    for condition, held in mapping.conditions.items():
+        if name == held.source:
+            why = "as said" if name in assigned.said else "its name; it keeps one value in each trial"
+            return Taken(name, condition, held.unit or KNOWN[condition], low, high, why, outline)
+    for channel, column in mapping.columns.items():
         if name in column.sources:
             unit = column.unit or CHANNELS[channel].unit
             return Taken(name, channel, unit, low, high, units.why.get(name, "its name"), outline)
@@ -232,7 +247,7 @@ def mapping_text(mapping: Mapping, notes: tuple[str, ...] = (), files: Sequence[
     plain = {name: value for name, value in values.items() if not isinstance(value, dict | list)}
     tables = {name: value for name, value in values.items() if name not in plain}
     head = "".join(f"# {note}\n" for note in notes)
-    return head + tomli_w.dumps(plain | tables) + _conditions_comment(files)
+    return head + tomli_w.dumps(plain | tables) + _conditions_comment(files, mapping)
 
 
 CONDITIONS_COMMENT = """
@@ -244,11 +259,14 @@ CONDITIONS_COMMENT = """
 """
 
 
-def _conditions_comment(files: Sequence[str]) -> str:
+def _conditions_comment(files: Sequence[str], mapping: Mapping) -> str:
     if not files:
         return ""
+    examples = {"load_kg": 0.1, "arm_m": 0.5}
+    told = ", ".join(f"{name} = {value:g}" for name, value in examples.items() if name not in mapping.conditions)
+    conditions = told or 'waveform = "slow sine"'
     names = [json.dumps(file, ensure_ascii=False) for file in files]
-    blocks = [f"# [[trials]]\n# file = {name}\n# conditions = {{ load_kg = 0.1, arm_m = 0.5 }}\n" for name in names]
+    blocks = [f"# [[trials]]\n# file = {name}\n# conditions = {{ {conditions} }}\n" for name in names]
     return CONDITIONS_COMMENT + "".join(blocks)
 
 

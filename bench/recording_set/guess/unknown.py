@@ -8,6 +8,7 @@ import numpy as np
 
 from bench.config.rig import Rig, sensor_turns
 from bench.recording_set.checks import LARGEST
+from bench.recording_set.conditions import OTHER_UNITS
 from bench.recording_set.container import Container, open_container
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.formats.column_table import Columns
@@ -26,7 +27,7 @@ from bench.recording_set.read import (
 from bench.recording_set.recording_csv import read_columns
 from bench.recording_set.recording_set import RecordingSet
 from bench.recording_set.text.table import Table
-from bench.recording_set.trials_csv import OTHER_UNITS, TRIALS_FILE
+from bench.recording_set.trials_csv import TRIALS_FILE
 from compensator.lab.recordings.recording import CHANNELS, EVENT_COLUMN
 
 
