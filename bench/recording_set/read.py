@@ -31,6 +31,7 @@ from compensator.lab.recordings.repeats import unlike_repeats
 
 RIG_FILE = "rig.toml"
 MAPPING_FILE = "mapping.toml"
+TELL_ARM = "put the way from the axis to the load into the rig: [arm] length_m = 0.5, in m"
 SourceTable = Table | ColumnTable
 
 
@@ -62,7 +63,7 @@ def read_recording_set(
         notes = [f"{place(container, MAPPING_FILE)}: the mapping that was used"] if own else []
         notes += [f"{table.place}: {table.told}" for table in tables if isinstance(table, Table) and table.told]
     check_recordings(recordings, rig, mapping)
-    notes += [*_without_load(recordings), *_unlike(recordings)]
+    notes += [*_without_load(recordings), *_without_arm(recordings, rig), *_unlike(recordings)]
     return RecordingSet(name_of_set(paths), rig, recordings, tuple(notes))
 
 
@@ -90,6 +91,16 @@ def _without_load(recordings: Sequence[Recording]) -> list[str]:
         'column of the files holds it, into [conditions] (load_kg = { from = "payload", unit = "g" })'
     )
     return [f"{which} load_kg: effects of the load are not judged; {remedy}"]
+
+
+def _without_arm(recordings: Sequence[Recording], rig: Rig) -> list[str]:
+    """Note of loads of which nobody tells where they hang: their moment counts as none."""
+    loaded = [one for one in recordings if one.conditions.get("load_kg", 0.0) != 0.0]
+    armless = [one.name for one in loaded if "arm_m" not in one.conditions]
+    if not armless or rig.joint != "rotary" or rig.arm.length_m is not None:
+        return []
+    which = f"'{armless[0]}'" + (f" and {len(armless) - 1} more" if len(armless) > 1 else "")
+    return [f"load_kg of {which} is told, and not where it hangs, so that its moment counts as none; {TELL_ARM}"]
 
 
 def _unlike(recordings: Sequence[Recording]) -> list[str]:

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bench.config.rig import Rig
 from bench.recording_set import Mapping, RecordingSetError, read_mapping, read_recording_set
 from bench.recording_set.guess import Known, guess_mapping, guess_of, mapping_text, read_said, read_unknown
 from bench.recording_set.guess.guess import Sheet
@@ -206,3 +207,15 @@ def test_files_are_guessed_written_and_read_with_their_loads(tmp_path: Path) -> 
     (tmp_path / "b.csv").write_text(rows(COLUMNS | {"payload_g": POSITION_RAD}))
     (question,) = guess_of(paths, None, Known(read_said(["payload_g=load_kg[g]"])))[0].questions
     assert "load_kg changes within the trial" in question
+
+
+def test_a_load_whose_place_nobody_tells_is_noted(tmp_path: Path) -> None:
+    folder = write_set(tmp_path / "set", {"a.csv": table("0.8", "0.8"), "b.csv": table("0", "0")})
+    noted = read_recording_set(folder, Mapping.model_validate(LOAD)).notes
+    assert [note for note in noted if "'a' is told, and not where it hangs" in note and "[arm] length_m" in note]
+    rig = Rig.model_validate({"name": "mine", "arm": {"length_m": 0.3}})
+    assert not [note for note in read_recording_set(folder, Mapping.model_validate(LOAD), rig).notes if "hangs" in note]
+    path = tmp_path / "log.csv"
+    path.write_text(rows(COLUMNS | {"payload_g": np.full(len(POSITION_RAD), 100.0)}))
+    for told, wanted in ((None, 1), (rig, 0)):
+        assert len([note for note in guess_of([path], told, Known({}))[0].notes if "hangs" in note]) == wanted

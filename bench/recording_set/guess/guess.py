@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping as MappingOf
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -117,6 +117,7 @@ class Known:
     Attributes:
         rate_hz: of the samples, where no column is a time.
         supply_v: where no column holds it.
+        gear_ratio, rig_supply_v: of the rig, where that tells them.
     """
 
     said: MappingOf[str, Said]
@@ -124,6 +125,7 @@ class Known:
     rate_hz: float | None = None
     supply_v: float | None = None
     gear_ratio: float | None = None
+    rig_supply_v: float | None = None
 
 
 NOTHING = Known({})
@@ -138,6 +140,7 @@ def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
     columns = {units.channel_of(quantity): column for quantity, column in made.items() if column is not None}
     conditions = {condition: _held(name, assigned) for condition, name in assigned.conditions.items()}
     used = {name for column in columns.values() for name in column.sources} | set(assigned.conditions.values())
+    known, supply = _with_supply_of_rig(known, assigned)
     mapping = Mapping(
         columns=columns,
         conditions=conditions,
@@ -148,7 +151,7 @@ def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
         constants={} if known.supply_v is None else {"supply_v": known.supply_v},
         position_from_speed="position" not in assigned.columns and "velocity" in assigned.columns,
     )
-    notes = list(units.notes)
+    notes = [*units.notes, *supply]
     if mapping.position_from_speed:
         notes.append("no column is a position: it is the integral of the speed, from 0 in each trial")
     taken = tuple(_taken(name, mapping, units, assigned) for name in assigned.names)
@@ -188,6 +191,15 @@ def _rising(sheets: Sequence[Sheet], assigned: Assigned) -> str:
     return "--take 'NAME=time[ms]'"
 
 
+def _with_supply_of_rig(known: Known, assigned: Assigned) -> tuple[Known, list[str]]:
+    """The same with the supply of the rig, and a note of it, where the duty needs one and nothing else tells it."""
+    needed = set(EFFORTS) & set(assigned.columns) == {"duty"} and "supply" not in assigned.columns
+    if not needed or known.supply_v is not None or known.rig_supply_v is None:
+        return known, []
+    note = f"the supply is {known.rig_supply_v:g} V throughout, as the rig says ([supply] voltage_v)"
+    return replace(known, supply_v=known.rig_supply_v), [note]
+
+
 def _missing(sheets: Sequence[Sheet], assigned: Assigned, known: Known, rate_hz: float | None) -> list[str]:
     """What every study needs."""
     there = listed(assigned.names)
@@ -208,7 +220,7 @@ def _missing(sheets: Sequence[Sheet], assigned: Assigned, known: Known, rate_hz:
     elif efforts == {"duty"} and "supply" not in assigned.columns and known.supply_v is None:
         found.append(
             "the duty is an effort only with the supply: say which column it is, --take 'NAME=supply[V]', or its "
-            "voltage, --supply-v 12"
+            "voltage, --supply-v 12, or in a rig [supply] voltage_v = 12"
         )
     return found
 

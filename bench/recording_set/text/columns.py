@@ -26,10 +26,10 @@ def suggestion(name: str) -> str:
     """A sentence for a column that is no channel: a conversion, or the nearest names; "" where nothing is near."""
     lower = name.lower()
     if lower in KNOWN or lower in OTHER_UNITS:
-        known = lower if lower in KNOWN else OTHER_UNITS[lower][0]
+        condition = lower if lower in KNOWN else OTHER_UNITS[lower][0]
         unit_told = "" if lower in KNOWN else f', unit = "{lower.rpartition("_")[2]}"'
-        how = f'conditions.{known} = {{ from = "{name}"{unit_told} }}'
-        return f"{known} is a condition of the whole trial; take it from the column with a mapping: {how}"
+        how = f'conditions.{condition} = {{ from = "{name}"{unit_told} }}'
+        return f"{condition} is a condition of the whole trial; take it from the column with a mapping: {how}"
     for suffix, unit in _UNITS.items():
         channel = lower.removesuffix(f"_{suffix}") + ENDINGS[unit.si]
         if lower.endswith(f"_{suffix}") and channel in CHANNELS:
