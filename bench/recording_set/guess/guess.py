@@ -9,7 +9,6 @@ from typing import Literal
 import numpy as np
 import tomli_w
 
-from bench.config.rig import Rig
 from bench.recording_set.conditions import KNOWN
 from bench.recording_set.formats.column_table import Columns, listed
 from bench.recording_set.guess.assign import Assigned, Said, assign
@@ -259,7 +258,22 @@ def mapping_text(mapping: Mapping, notes: tuple[str, ...] = (), files: Sequence[
     plain = {name: value for name, value in values.items() if not isinstance(value, dict | list)}
     tables = {name: value for name, value in values.items() if name not in plain}
     head = "".join(f"# {note}\n" for note in notes)
-    return head + tomli_w.dumps(plain | tables) + _conditions_comment(files, mapping)
+    text = tomli_w.dumps(plain | tables).replace(POSITION, POSITION + ZERO_COMMENT if _has_zero(mapping) else POSITION)
+    return head + text + _conditions_comment(files, mapping)
+
+
+POSITION = "[columns.position_rad]\n"
+ZERO_COMMENT = """\
+# 0 has to be where the arm hangs straight down: gravity is taken as A sin(position). Where the log has another zero,
+# add the position that the joint has there, in rad whatever the unit of the column; of a log that is 0 at the level arm:
+# offset = 1.5708
+"""
+
+
+def _has_zero(mapping: Mapping) -> bool:
+    """Whether the angle is taken from a column, and nobody told where its zero lies."""
+    column = mapping.columns.get("position_rad")
+    return column is not None and column.offset == 0.0
 
 
 CONDITIONS_COMMENT = """
@@ -280,21 +294,3 @@ def _conditions_comment(files: Sequence[str], mapping: Mapping) -> str:
     names = [json.dumps(file, ensure_ascii=False) for file in files]
     blocks = [f"# [[trials]]\n# file = {name}\n# conditions = {{ {conditions} }}\n" for name in names]
     return CONDITIONS_COMMENT + "".join(blocks)
-
-
-RIG_COMMENT = """
-# What is known of motor, gear and arm, in numbers of your own:
-# [motor]
-# torque_constant_n_m_a = 0.05
-# [gear]
-# ratio = 20
-# [arm]
-# length_m = 0.5
-"""
-
-
-def rig_text(rig: Rig) -> str:
-    """The text of a rig.toml, as far as the rig is known; of one that is not, comments show the keys."""
-    told = rig.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
-    unknown = rig.joint == "rotary" and not {"motor", "gear", "arm"} & told.keys()
-    return tomli_w.dumps(told) + (RIG_COMMENT if unknown else "")
