@@ -265,7 +265,8 @@ def mapping_text(mapping: Mapping, notes: tuple[str, ...] = (), files: Sequence[
 POSITION = "[columns.position_rad]\n"
 ZERO_COMMENT = """\
 # 0 has to be where the arm hangs straight down: gravity is taken as A sin(position). Where the log has another zero,
-# add the position that the joint has there, in rad whatever the unit of the column; of a log that is 0 at the level arm:
+# add the position that the joint has there, in rad whatever the unit of the column, here and in target_rad. Of a log
+# that is 0 at the level arm:
 # offset = 1.5708
 """
 
