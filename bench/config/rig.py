@@ -23,55 +23,67 @@ class Section(Settings):
 class Motor(Section):
     """PM DC motor, values at the motor shaft."""
 
-    name: str | None = Field(None, max_length=LONGEST_NAME, description="Make and type")
-    resistance_ohm: float | None = quantity(None, "ohm", "Resistance of the winding", gt=0)
-    inductance_h: float | None = quantity(None, "H", "Inductance of the winding", gt=0)
-    torque_constant_n_m_a: float | None = quantity(None, "N m/A", "Torque constant", gt=0)
-    back_emf_v_s_rad: float | None = quantity(None, "V s/rad", "Back-EMF constant", gt=0)
-    rotor_inertia_kg_m2: float | None = quantity(None, "kg m2", "Inertia of the rotor", gt=0)
+    name: str | None = Field(None, max_length=LONGEST_NAME, description="Make and type", examples=["make and type"])
+    resistance_ohm: float | None = quantity(None, "ohm", "Resistance of the winding", gt=0, examples=[0.7])
+    inductance_h: float | None = quantity(None, "H", "Inductance of the winding", gt=0, examples=[0.0005])
+    torque_constant_n_m_a: float | None = quantity(None, "N m/A", "Torque constant", gt=0, examples=[0.05])
+    back_emf_v_s_rad: float | None = quantity(None, "V s/rad", "Back-EMF constant", gt=0, examples=[0.05])
+    rotor_inertia_kg_m2: float | None = quantity(None, "kg m2", "Inertia of the rotor", gt=0, examples=[2e-05])
     constants_at_c: float | None = quantity(
-        None, "degC", "Temperature at which resistance and back-EMF constant hold, as the drive measures it"
+        None,
+        "degC",
+        "Temperature at which resistance and back-EMF constant hold, as the drive measures it",
+        examples=[25.0],
     )
-    copper_per_k: float | None = quantity(None, "1/K", "Growth of the resistance with that temperature", ge=0)
-    magnet_per_k: float | None = quantity(None, "1/K", "Fall of the back-EMF constant with that temperature", ge=0)
+    copper_per_k: float | None = quantity(
+        None, "1/K", "Growth of the resistance with that temperature", ge=0, examples=[0.0039]
+    )
+    magnet_per_k: float | None = quantity(
+        None, "1/K", "Fall of the back-EMF constant with that temperature", ge=0, examples=[0.001]
+    )
 
 
 class Gear(Section):
     """Gear between motor and joint."""
 
-    ratio: float | None = quantity(None, "", "Motor turns per joint turn", gt=0)
-    backlash_rad: float | None = quantity(None, "rad", "Total free play at the joint", ge=0)
+    ratio: float | None = quantity(None, "", "Motor turns per joint turn", gt=0, examples=[20.0])
+    backlash_rad: float | None = quantity(None, "rad", "Total free play at the joint", ge=0, examples=[0.002])
     stiffness_n_m_rad: float | None = quantity(
-        None, "N m/rad", "Torsional stiffness of gear and shaft at the joint, the motor held", gt=0
+        None, "N m/rad", "Torsional stiffness of gear and shaft at the joint, the motor held", gt=0, examples=[2000.0]
     )
 
 
 class Arm(Section):
     """Arm in a vertical plane; angle 0 is vertically down."""
 
-    length_m: float | None = quantity(None, "m", "Axis to the load at the tip", gt=0)
-    mass_kg: float | None = quantity(None, "kg", "Mass of the arm without load", ge=0)
-    centre_of_mass_m: float | None = quantity(None, "m", "Axis to the arm's own centre of mass; 0 is balanced")
-    inertia_kg_m2: float | None = quantity(None, "kg m2", "Inertia about the axis, without load", gt=0)
+    length_m: float | None = quantity(None, "m", "Axis to the load at the tip", gt=0, examples=[0.5])
+    mass_kg: float | None = quantity(None, "kg", "Mass of the arm without load", ge=0, examples=[0.4])
+    centre_of_mass_m: float | None = quantity(
+        None, "m", "Axis to the arm's own centre of mass; 0 is balanced", examples=[0.2]
+    )
+    inertia_kg_m2: float | None = quantity(None, "kg m2", "Inertia about the axis, without load", gt=0, examples=[0.03])
 
 
 class Sensor(Section):
     """Position sensor."""
 
-    counts_per_turn: float | None = quantity(None, "1/turn", "Counts per turn of what it turns with", gt=0)
+    counts_per_turn: float | None = quantity(
+        None, "1/turn", "Counts per turn of what it turns with", gt=0, examples=[4096.0]
+    )
     at: Literal["motor", "joint"] | None = Field(
-        None, description="What it turns with; left out: the motor. That of a real drive does"
+        None, description="What it turns with; left out: the motor. That of a real drive does", examples=["motor"]
     )
 
 
 class Supply(Section):
     """Supply of the PWM stage."""
 
-    voltage_v: float | None = quantity(None, "V", "Supply voltage", gt=0)
+    voltage_v: float | None = quantity(None, "V", "Supply voltage", gt=0, examples=[24.0])
     is_nominal: bool | None = Field(
         None,
         description="True: nobody measures the supply, and recordings hold this number whatever the load does. "
         "Left out: so it is where the supply of every trial keeps to the last digit what it was",
+        examples=[True],
     )
 
 
@@ -79,7 +91,7 @@ class Effort(Section):
     """Which channel stands for the effort in a study, where the default is not wanted."""
 
     quantity: Literal["torque", "force", "current", "current_estimate", "terminal_voltage"] = Field(
-        description="Quantity that the model predicts"
+        description="Quantity that the model predicts", examples=["current"]
     )
 
 

@@ -26,6 +26,7 @@ _IN_TRIALS_CSV = (
     "scale = 1"
 )
 _IN_THE_MAPPING = 'Correct it in [[trials]]; or confirm it beside them: trials_columns.load_kg with from = "load_kg"'
+_OF_A_COLUMN = 'Say so in the mapping: conditions.load_kg with unit = "g"; or confirm it there with unit = "kg"'
 BY_FAR = 10.0  # a spring that carries nine tenths of the load is not asked about; g for kg makes 1000
 FEWEST_ROWS = 20  # fewer are an example, and show nothing of a motion
 TWO_TURNS_RAD = 4.0 * np.pi
@@ -36,9 +37,11 @@ THERE_AND_BACK = 2  # moves the other way
 def load_question(recordings: Sequence[Recording], rig: Rig, mapping: Mapping) -> tuple[str, str]:
     """The trial whose load is asked about, and what is asked; two "" where the loads can be, or nothing tells.
 
-    A mapping that states `trials_columns.load_kg` confirms them.
+    A mapping that states `trials_columns.load_kg`, or the unit of `conditions.load_kg`, confirms them.
     """
-    if rig.horizontal or rig.joint != "rotary" or "load_kg" in mapping.trials_columns:
+    held = mapping.conditions.get("load_kg")
+    confirmed = "load_kg" in mapping.trials_columns or (held is not None and held.unit is not None)
+    if rig.horizontal or rig.joint != "rotary" or confirmed:
         return "", ""
     changes = [(_least_change_n_m(one, rig), one) for one in recordings]
     change_n_m, heaviest = max(changes, key=lambda change: change[0])
@@ -50,7 +53,7 @@ def load_question(recordings: Sequence[Recording], rig: Rig, mapping: Mapping) -
     return heaviest.name, (
         f"load_kg is {heaviest.conditions['load_kg']:g} kg: over this motion its moment changes by at least "
         f"{change_n_m:.3g} N m, and no trial has more than {highest_n_m:.3g} N m at the joint. Is it in g? "
-        + (_IN_THE_MAPPING if mapping.trials else _IN_TRIALS_CSV)
+        + (_OF_A_COLUMN if held else _IN_THE_MAPPING if mapping.trials else _IN_TRIALS_CSV)
     )
 
 

@@ -6,12 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bench.recording_set.condition_columns import held
+from bench.recording_set.conditions import TEXTS
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.formats.column_table import ColumnTable
 from bench.recording_set.mapping import SPEED_UNITS, Column, Mapping
 from bench.recording_set.text.columns import TIME, Plan, plan
 from bench.recording_set.text.stamps import NoStamp, seconds_of
-from compensator.lab.recordings.recording import FloatArray, IntArray
+from compensator.lab.recordings.recording import Condition, FloatArray, IntArray
 
 CLOCK_S = 1e6  # a trial that begins so late tells the time of a clock
 RESTART = 0.5  # of the time that passed: a clock that falls back by so much began anew
@@ -23,30 +25,32 @@ class Raw:
 
     Attributes:
         numbers: column -> values, NaN where not known.
-        stamps: column -> text of date and time.
+        texts: column -> its cells: date and time, or a condition in words.
         error: makes an error of a message, a row (from 0) and a column.
     """
 
     numbers: dict[str, FloatArray]
-    stamps: dict[str, list[str]]
+    texts: dict[str, list[str]]
     error: Callable[[str, int, str], RecordingSetError]
 
     def __len__(self) -> int:
-        return len(next(iter(self.numbers.values()), next(iter(self.stamps.values()), [])))
+        return len(next(iter(self.numbers.values()), next(iter(self.texts.values()), [])))
 
 
 class Converted(NamedTuple):
-    """The channels, and which row of the file each sample is."""
+    """The channels, which row of the file each sample is, and the conditions that columns of the file hold."""
 
     channels: dict[str, FloatArray]
     order: IntArray | None
+    conditions: dict[str, Condition]
 
 
 def channels_of(raw: Raw, plan: Plan, mapping: Mapping) -> Converted:
-    """The channels of a trial.
+    """The channels and conditions of a trial.
 
     Raises:
-        RecordingSetError: a value that is infinite, a time that is not known, stands still or runs backwards.
+        RecordingSetError: a value that is infinite, a time that is not known, stands still or runs backwards, a
+            condition that changes.
     """
     time_s = _time(raw, plan, mapping)
     for name, values in raw.numbers.items():
@@ -69,11 +73,16 @@ def channels_of(raw: Raw, plan: Plan, mapping: Mapping) -> Converted:
         channels.setdefault(channel, np.full(len(time_s), value))
     if mapping.position_from_speed:
         _integrate(channels)
-    return Converted(channels, order)
+    conditions: dict[str, Condition] = {}
+    for name, source in plan.conditions.items():
+        cells = raw.texts[source.source] if name in TEXTS else raw.numbers[source.source]
+        if (constant := held(name, source, cells, raw.error)) is not None:
+            conditions[name] = constant
+    return Converted(channels, order, conditions)
 
 
-def channels_of_table(table: ColumnTable, mapping: Mapping) -> dict[str, FloatArray]:
-    """The channels of a trial in a file that is no text. Errors as `channels_of`, and of `plan`."""
+def channels_of_table(table: ColumnTable, mapping: Mapping) -> Converted:
+    """The channels and conditions of a trial in a file that is no text. Errors as `channels_of`, and of `plan`."""
     wanted = plan(table, mapping)
 
     def error(message: str, row: int, column: str) -> RecordingSetError:
@@ -85,8 +94,8 @@ def channels_of_table(table: ColumnTable, mapping: Mapping) -> dict[str, FloatAr
         if isinstance(values, list):
             raise table.error("is text; wanted numbers, or for a time the unit 'stamp' in a mapping", column=name)
         found[name] = values
-    stamps = {name: [str(one) for one in table.columns[name]] for name in wanted.stamps}
-    return channels_of(Raw(found, stamps, error), wanted, mapping).channels
+    texts = {name: [str(one) for one in table.columns[name]] for name in wanted.texts}
+    return channels_of(Raw(found, texts, error), wanted, mapping)
 
 
 def _values(raw: Raw, column: Column, mapping: Mapping) -> FloatArray:
@@ -110,7 +119,7 @@ def _time(raw: Raw, plan: Plan, mapping: Mapping) -> FloatArray:
         return np.arange(len(raw)) / mapping.rate_hz
     column = plan.channels[TIME]
     if column.is_stamp:
-        cells = [" ".join(parts) for parts in zip(*(raw.stamps[name] for name in column.sources), strict=True)]
+        cells = [" ".join(parts) for parts in zip(*(raw.texts[name] for name in column.sources), strict=True)]
         try:
             return seconds_of(cells)
         except NoStamp as error:

@@ -27,6 +27,10 @@ scale = [1, 1e-9]
 [constants]                   # channels that nobody recorded
 supply_v = 24.0
 
+[conditions.load_kg]          # a condition of each trial, of a column that keeps one value throughout it
+from = "payload"
+unit = "g"
+
 [trials_columns]              # columns of trials.csv that have another name there
 kind = "trajectory"           # stays a condition too
 load_kg = { from = "load_g", scale = 0.001 }
@@ -44,6 +48,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
 from bench.config.rig import Section
+from bench.recording_set.conditions import KNOWN, OTHER_UNITS, RESERVED, TEXTS
 from bench.recording_set.text.encoding import is_text
 from bench.recording_set.text.toml_file import read_model
 from bench.recording_set.units import TURN, UNITS, Unit, unit_named, units_of
@@ -75,6 +80,15 @@ def _is_condition(value: Any) -> Condition:
     raise ValueError("wanted a finite number, text, true or false")
 
 
+def _is_named(name: str) -> str:
+    if name in OTHER_UNITS:
+        known, _ = OTHER_UNITS[name]
+        raise ValueError(f'wanted {known}, with unit = "{name.rpartition("_")[2]}" of the column')
+    if name in RESERVED or name != name.strip() or not name.isprintable() or not name:
+        raise ValueError(f"a condition cannot be called so; known are {', '.join(KNOWN)}, and any name of your own")
+    return name
+
+
 def _is_unit(unit: str) -> str:
     if unit != STAMP and unit_named(unit) is None:
         names = dict.fromkeys([STAMP, *(known.name for known in UNITS.values())])
@@ -93,6 +107,19 @@ class Renamed(Section):
     source: str = Field(alias="from", min_length=1, description="Name of the column in the file")
     scale: Factor = Field(1.0, description="Factor to SI, not 0")
     offset: Finite = Field(0.0, description="Added after the factor, SI")
+
+
+class ConditionColumn(Renamed):
+    """A column that says what was held constant, one value in each trial: scale x column + offset."""
+
+    unit: Annotated[str, AfterValidator(_is_unit)] | None = Field(
+        None, description="Unit of the column: kg, g, lb, oz of load_kg; m, mm, cm of arm_m; s, ms, min of session_s"
+    )
+
+    def to_si(self) -> tuple[float, float]:
+        """Factor and offset, that of the unit in them."""
+        unit = (None if self.unit is None else unit_named(self.unit)) or Unit("", "")
+        return self.scale * unit.factor, self.offset + unit.offset
 
 
 class Column(Section):
@@ -192,6 +219,11 @@ class Mapping(Section):
     position_from_speed: bool = Field(
         False, description="Position is the integral of the speed; where each trial begins is not known then"
     )
+    conditions: dict[Annotated[str, AfterValidator(_is_named)], ConditionColumn] = Field(
+        default_factory=dict,
+        description="Condition of a trial, and the column of its file that holds it; the column keeps one value "
+        f"throughout the trial. Known are {', '.join(f'`{name}`' for name in KNOWN)}; others may be named",
+    )
     trials_columns: dict[str, str | Renamed] = Field(
         default_factory=dict, description="Column of trials.csv, and the one that it comes from there"
     )
@@ -216,6 +248,21 @@ class Mapping(Section):
                 raise ValueError(f"columns.{channel}: the unit is '{column.unit}'; wanted one of {wanted}")
             if unit.counts and self.counts_per_turn is None:
                 raise ValueError(f"columns.{channel} is in counts; add counts_per_turn, counts per turn of the joint")
+        return self
+
+    @model_validator(mode="after")
+    def _units_of_conditions_fit(self) -> "Mapping":
+        for name, column in self.conditions.items():
+            if name in TEXTS and (column.scale != 1.0 or column.offset):
+                raise ValueError(f"conditions.{name} is text; leave scale and offset out")
+            if column.unit is None:
+                continue
+            if not (si := KNOWN.get(name)):
+                raise ValueError(f"conditions.{name} has no unit; leave it out, or say a scale")
+            unit = None if column.unit == STAMP else unit_named(column.unit)
+            if unit is None or unit.si != si:
+                wanted = ", ".join(units_of(si))
+                raise ValueError(f"conditions.{name}: the unit is '{column.unit}'; wanted one of {wanted}")
         return self
 
     def factors(self, column: Column) -> tuple[list[float], float]:

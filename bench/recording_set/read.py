@@ -6,6 +6,8 @@ from pathlib import Path
 
 from bench.config.rig import Rig
 from bench.recording_set.checks import check_recordings
+from bench.recording_set.condition_columns import joined
+from bench.recording_set.conditions import condition_problem
 from bench.recording_set.container import Container, Files, check_name, open_container
 from bench.recording_set.conversion import channels_of_table
 from bench.recording_set.errors import RecordingSetError
@@ -21,7 +23,6 @@ from bench.recording_set.trials_csv import (
     TEXT_ENDINGS,
     TRIALS_FILE,
     TrialEntry,
-    condition_problem,
     name_of,
     read_trials_csv,
 )
@@ -30,6 +31,7 @@ from compensator.lab.recordings.repeats import unlike_repeats
 
 RIG_FILE = "rig.toml"
 MAPPING_FILE = "mapping.toml"
+TELL_ARM = "put the way from the axis to the load into the rig: [arm] length_m = 0.5, in m"
 SourceTable = Table | ColumnTable
 
 
@@ -61,7 +63,7 @@ def read_recording_set(
         notes = [f"{place(container, MAPPING_FILE)}: the mapping that was used"] if own else []
         notes += [f"{table.place}: {table.told}" for table in tables if isinstance(table, Table) and table.told]
     check_recordings(recordings, rig, mapping)
-    notes += [*_without_load(recordings), *_unlike(recordings)]
+    notes += [*_without_load(recordings), *_without_arm(recordings, rig), *_unlike(recordings)]
     return RecordingSet(name_of_set(paths), rig, recordings, tuple(notes))
 
 
@@ -84,8 +86,21 @@ def _without_load(recordings: Sequence[Recording]) -> list[str]:
     which = (
         "no trial tells" if len(silent) == len(recordings) else f"{len(silent)} of {len(recordings)} trials do not tell"
     )
-    remedy = f"put it into {TRIALS_FILE}, or into the [[trials]] of a mapping (conditions = {{ load_kg = 0.1 }})"
+    remedy = (
+        f"put it into {TRIALS_FILE}, or into the [[trials]] of a mapping (conditions = {{ load_kg = 0.1 }}); where a "
+        'column of the files holds it, into [conditions] (load_kg = { from = "payload", unit = "g" })'
+    )
     return [f"{which} load_kg: effects of the load are not judged; {remedy}"]
+
+
+def _without_arm(recordings: Sequence[Recording], rig: Rig) -> list[str]:
+    """Note of loads of which nobody tells where they hang: their moment counts as none."""
+    loaded = [one for one in recordings if one.conditions.get("load_kg", 0.0) != 0.0]
+    armless = [one.name for one in loaded if "arm_m" not in one.conditions]
+    if not armless or rig.joint != "rotary" or rig.arm.length_m is not None:
+        return []
+    which = f"'{armless[0]}'" + (f" and {len(armless) - 1} more" if len(armless) > 1 else "")
+    return [f"load_kg of {which} is told, and not where it hangs, so that its moment counts as none; {TELL_ARM}"]
 
 
 def _unlike(recordings: Sequence[Recording]) -> list[str]:
@@ -201,19 +216,22 @@ def _text_table(container: Container, file: str, mapping: Mapping, numeric: bool
 
 def _check_mapping_is_used(container: Container, mapping: Mapping, tables: Sequence[SourceTable]) -> None:
     there = {name for table in tables for name in table.header}
-    for channel, column in mapping.columns.items():
-        if missing := [name for name in column.sources if name not in there]:
+    wanted = {channel: column.sources for channel, column in mapping.columns.items()}
+    wanted |= {name: (column.source,) for name, column in mapping.conditions.items()}
+    for channel, sources in wanted.items():
+        if missing := [name for name in sources if name not in there]:
             message = f"the mapping takes {channel} from '{missing[0]}', which is in no file; they have "
             raise RecordingSetError(container.path.name, message + ", ".join(sorted(there)), column=missing[0])
 
 
 def _read(entry: TrialEntry, table: SourceTable, mapping: Mapping) -> Recording:
     if isinstance(table, Table):
-        channels, events = read_recording_csv(table, mapping)
+        (channels, _, found), events = read_recording_csv(table, mapping)
     else:
-        channels, events = channels_of_table(table, mapping), []
+        (channels, _, found), events = channels_of_table(table, mapping), []
     rows = len(channels["time_s"])
     if entry.rows is not None and entry.rows != rows:
         message = f"has {rows} rows; {TRIALS_FILE}, line {entry.line}, says {entry.rows}. Is it cut off?"
         raise RecordingSetError(table.place, message)
-    return Recording(entry.name, entry.kind, entry.conditions, channels, events)
+    conditions = joined(entry, found, table.place, mapping)
+    return Recording(entry.name, entry.kind, conditions, channels, events)

@@ -6,7 +6,7 @@ from itertools import islice
 
 import numpy as np
 
-from bench.recording_set.conversion import Raw, channels_of
+from bench.recording_set.conversion import Converted, Raw, channels_of
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.mapping import Mapping
 from bench.recording_set.text import numbers
@@ -21,22 +21,23 @@ MOSTLY = 0.5  # of what stands in a column: one that holds so much text is one o
 GROUPED = re.compile(r"[+-]?\d{1,3}([.,' ]\d{3})+([.,]\d*)?")
 
 
-def read_recording_csv(table: Table, mapping: Mapping) -> tuple[dict[str, FloatArray], list[Event]]:
-    """The channels and events of a trial.
+def read_recording_csv(table: Table, mapping: Mapping) -> tuple[Converted, list[Event]]:
+    """The channels, conditions and events of a trial.
 
     Raises:
         RecordingSetError: unknown columns, ragged lines, text in a number, too few or too many rows,
             a time that is not finite, stands still or runs backwards.
     """
     wanted = plan(table, mapping)
-    reader = _Reader(table, wanted.numbers, wanted.stamps, wanted.events)
+    reader = _Reader(table, wanted.numbers, wanted.texts, wanted.events)
     raw = reader.raw()
-    channels, order = channels_of(raw, wanted, mapping)
+    converted = channels_of(raw, wanted, mapping)
+    channels, order = converted.channels, converted.order
     events: list[Event] = []
     for sample, row in enumerate(range(len(raw)) if order is None else order.tolist()):
         if row in reader.events:
             events += decode_events(reader.events[row], float(channels[TIME][sample]))
-    return channels, events
+    return converted, events
 
 
 def read_columns(table: Table) -> dict[str, FloatArray | list[str]]:
@@ -47,7 +48,7 @@ def read_columns(table: Table) -> dict[str, FloatArray | list[str]]:
     """
     text = _text_columns(table)
     raw = _Reader(table, [name for name in table.header if name not in text], text, None).raw()
-    return {name: raw.numbers[name] if name in raw.numbers else raw.stamps[name] for name in table.header}
+    return {name: raw.numbers[name] if name in raw.numbers else raw.texts[name] for name in table.header}
 
 
 def _text_columns(table: Table) -> list[str]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from bench.recording_set.conditions import RESERVED, condition_problem
 from bench.recording_set.container import check_name
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.formats.registry import BINARY_ENDINGS
@@ -15,7 +16,6 @@ TRIALS_FILE = "trials.csv"
 DEFAULT_KIND = "recording"
 TEXT_ENDINGS = (".csv", ".tsv", ".txt", ".dat", ".asc", ".log")
 ENDINGS = (*TEXT_ENDINGS, *BINARY_ENDINGS)
-RESERVED = ("file", "name", "kind", "rows")  # every other column is a condition
 
 
 @dataclass(frozen=True)
@@ -140,30 +140,3 @@ def _check_once(table: Table, entries: Sequence[TrialEntry]) -> None:
                 message = f"'{name}' is named in line {seen[name]} already; wanted each trial once"
                 raise RecordingSetError(table.place, message, entry.line, column)
             seen[name] = entry.line
-
-
-_QUANTITIES = {"load_kg": "kg", "arm_m": "m"}
-_FLAGS = ("balanced",)
-# a name with another unit -> (the name that is known, factor)
-OTHER_UNITS = {
-    "load_g": ("load_kg", 1e-3),
-    "load_lb": ("load_kg", 0.45359237),
-    "load_oz": ("load_kg", 0.028349523125),
-    "arm_cm": ("arm_m", 1e-2),
-    "arm_mm": ("arm_m", 1e-3),
-}
-
-
-def condition_problem(name: str, value: Condition) -> str | None:
-    """What is wrong with a condition, what is wanted, and what to do; None where nothing is."""
-    lower = name.lower()
-    if lower in OTHER_UNITS:
-        known, factor = OTHER_UNITS[lower]
-        entry = f'trials_columns.{known} = {{ from = "{name}", scale = {factor:.10g} }}'
-        return f"is not in SI; {known} is known. Convert with a mapping: {entry}"
-    if name in _QUANTITIES and (isinstance(value, (bool, str)) or value < 0):
-        found = f"'{value}'" if isinstance(value, (bool, str)) else f"{value:g}"
-        return f"found {found}; wanted a number of 0 or more [{_QUANTITIES[name]}], or nothing where it is not known"
-    if name in _FLAGS and not isinstance(value, bool) and value not in (0.0, 1.0):
-        return f"found '{value}'; wanted true or false, or nothing where it is not known"
-    return None

@@ -69,6 +69,12 @@ _TABLE: dict[str, dict[str, tuple[float, str]]] = {
         "ozf in": (0.00706155181, "ozfin ozin oz-in"),
         "lbf ft": (1.3558179483, "lbfft ftlb lbft ft-lb"),
     },
+    "kg": {
+        "kg": (1.0, "kilogram kilograms kilogramm kilo"),
+        "g": (1e-3, "gram grams gramm gr"),
+        "lb": (0.45359237, "lbs pound pounds"),
+        "oz": (0.028349523125, "ounce ounces"),
+    },
     "N": {"N": (1.0, "n newton newtons"), "mN": (1e-3, "mn"), "kN": (1e3, "kn"), "kgf": (9.80665, "kp")},
     "1": {"1": (1.0, "- norm pu"), "%": (1e-2, "percent pct prozent pourcent"), "permille": (1e-3, "")},
     "degC": {"degC": (1.0, "c celsius"), "K": (1.0, "k kelvin"), "degF": (5.0 / 9.0, "f fahrenheit")},

@@ -30,7 +30,7 @@ class GuessedColumn(BaseModel):
     """What a column of an unknown file is taken for."""
 
     column: str = Field(description="its name")
-    channel: str = Field(description="channel of the recording; empty where it is not used")
+    channel: str = Field(description="channel of the recording, or condition of the trial; empty where it is not used")
     unit: str = Field(description="of the column")
     low: float | None = Field(description="of its values, in that unit; null of text")
     high: float | None
@@ -78,14 +78,14 @@ def guess_upload(
         RecordingSetError: naming file and column, what was found and what is wanted.
     """
     from bench.recording_set.guess import Known, guess_of, mapping_text, read_said, rig_text
-    from bench.recording_set.guess.names import UNITS_OF
+    from bench.recording_set.guess.names import TAKEN
     from bench.recording_set.units import units_of
 
     guess, rig, notes = guess_of([path], None, Known(read_said(take), counts_per_turn, rate_hz, supply_v))
     return GuessedColumns(
         joint=guess.joint,
         columns=[GuessedColumn(**{**asdict(one), "outline": list(one.outline)}) for one in guess.taken],
-        quantities={one: [name for si in units for name in units_of(si)] for one, units in UNITS_OF.items()},
+        quantities={one: [name for si in units for name in units_of(si)] for one, units in TAKEN.items()},
         questions=list(guess.questions),
         notes=[*notes, *guess.notes],
         mapping=mapping_text(guess.mapping),

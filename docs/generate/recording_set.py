@@ -14,9 +14,10 @@ def channels() -> str:
 
 
 def mapping() -> str:
-    """The keys of `mapping.toml`, and those of one of its columns."""
+    """The keys of `mapping.toml`, and those of what its tables hold."""
     whole = Mapping.model_json_schema(by_alias=True)
     column = whole["$defs"]["Column"]
     renamed, trial = whole["$defs"]["Renamed"], whole["$defs"]["MappedTrial"]
-    parts = (("Column", column), ("Renamed", renamed), ("MappedTrial", trial))
+    condition = whole["$defs"]["ConditionColumn"]
+    parts = (("Column", column), ("ConditionColumn", condition), ("Renamed", renamed), ("MappedTrial", trial))
     return keys(whole) + "".join(f"\nA `{name}`:\n\n{keys(one)}" for name, one in parts)

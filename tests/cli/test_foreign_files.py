@@ -1,6 +1,7 @@
 """`friction-bench import --guess` and `explain` on files that nobody described."""
 
 import json
+import re
 import shlex
 from math import sin
 
@@ -52,11 +53,11 @@ def test_load_and_rig_are_told_by_what_a_guess_left_as_comments(command, tmp_pat
     assert f'name = "{tmp_path.name}"' in (tmp_path / "rig.toml").read_text()
     for name, remark in {
         "mapping.toml": "all files are listed then.\n",
-        "rig.toml": "in numbers of your own:\n",
+        "rig.toml": "its unit, and what it is.\n",
     }.items():
         head, found, keys = (tmp_path / name).read_text().partition(remark)
         assert found
-        (tmp_path / name).write_text(head + found + keys.replace("# ", ""))
+        (tmp_path / name).write_text(head + found + re.sub("^# ", "", keys, flags=re.MULTILINE))
     made = command("import", "log1.csv", "log2.csv", "--mapping", "mapping.toml", "--rig", "rig.toml", "--json")
     assert made.exit_code == 0, made.output
     trials = json.loads(command("trials", "--json").stdout)

@@ -198,3 +198,27 @@ def test_a_name_that_damaged_bytes_spell_is_not_repeated_whole(name: str) -> Non
         column_table.table_of("a.mat", {name: np.arange(5.0), "t": np.arange(5.0)})
     assert str(caught.value).isprintable()
     assert len(str(caught.value)) < 300
+
+
+@pytest.mark.parametrize(
+    ("columns", "supply_v", "wanted"),
+    [
+        ({}, None, {"supply_v": 12.0}),
+        ({}, 24.0, {"supply_v": 24.0}),  # what is said goes before
+        ({"torque_n_m": np.cos(np.arange(400))}, None, {}),  # the duty is not needed
+        ({"supply_v": 11.5}, None, {}),
+    ],
+)
+def test_the_duty_takes_the_supply_of_the_rig(tmp_path: Path, columns: dict, supply_v: float | None, wanted) -> None:
+    time_s = np.arange(400) * 0.01
+    given = {"time_s": time_s, "position_rad": np.sin(time_s), "duty": 0.5 * np.cos(time_s)}
+    given |= {name: np.broadcast_to(value, 400) for name, value in columns.items()}
+    path = tmp_path / "log.csv"
+    np.savetxt(path, np.column_stack(list(given.values())), delimiter=",", header=",".join(given), comments="")
+    rig = Rig.model_validate({"name": "mine", "supply": {"voltage_v": 12.0}})
+    guess, _, _ = guess_of([path], rig, Known({}, supply_v=supply_v))
+    assert not guess.questions
+    assert guess.mapping.constants == wanted
+    assert ("the supply is 12 V throughout" in " ".join(guess.notes)) == (wanted == {"supply_v": 12.0})
+    if not columns and supply_v is None:
+        assert "[supply] voltage_v = 12" in guess_of([path], None, Known({}))[0].questions[0]

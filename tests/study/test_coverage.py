@@ -55,6 +55,15 @@ def test_two_loads_both_ways_and_repeats(store: Store, experiment_id: int) -> No
     assert not {WARMTH, WARMER, REPEAT} & set(advised)
 
 
+def test_loads_that_hang_nobody_tells_where_are_told_to_count_as_none(store: Store) -> None:
+    trials = recordings(trials=plans(loads_kg=(0.0, 0.2)), seed=3)
+    for trial in trials:
+        del trial.conditions["arm_m"]
+    armless = Rig.model_validate({**RIG.model_dump(exclude_none=True), "arm": {}})
+    found = told(store, import_recording_set(store, RecordingSet("set", armless, trials), "armless"))
+    assert lacking(found, "loads") == "they count as none: where they hang is not told, arm.length_m of the rig"
+
+
 def test_a_temperature_that_some_trials_lack_is_told_with_their_names(store: Store) -> None:
     trials = recordings(trials=plans(loads_kg=(0.0, 0.2)), seed=3)
     trials[1].channels["temperature_c"][:] = np.nan

@@ -4,7 +4,8 @@ It proposes and says why; it keeps nothing. What is outside physics is a questio
 """
 
 from bench.recording_set.guess.assign import Said, read_said
-from bench.recording_set.guess.guess import Guess, Known, Taken, guess_mapping, mapping_text, rig_text
+from bench.recording_set.guess.guess import Guess, Known, Taken, guess_mapping, mapping_text
+from bench.recording_set.guess.rig_template import rig_text
 from bench.recording_set.guess.unknown import check_answered, guess_of, read_sheets, read_unknown
 
 __all__ = [

@@ -12,10 +12,22 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.recording_set.condition_columns import SAME
+from bench.recording_set.conditions import KNOWN
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.formats.column_table import Columns
 from bench.recording_set.guess.evidence import is_clock
-from bench.recording_set.guess.names import DRIVE, TARGET, UNITS_OF, Reading, read_name, same_kind
+from bench.recording_set.guess.names import (
+    DRIVE,
+    LOAD,
+    TAKEN,
+    TARGET,
+    UNITS_OF,
+    Reading,
+    is_weight,
+    read_name,
+    same_kind,
+)
 from bench.recording_set.mapping import STAMP
 from bench.recording_set.text.dialect import is_stamp
 from bench.recording_set.units import unit_named, units_of
@@ -57,15 +69,19 @@ def _read(text: str) -> Said:
             _OPTION, f"found '{text}'; wanted NAME=QUANTITY[UNIT], such as pos=position[deg] or mark=ignore"
         )
     quantity, unit = match["quantity"], match["unit"]
-    if quantity != IGNORE and quantity not in UNITS_OF:
-        wanted = ", ".join([*UNITS_OF, IGNORE])
+    if quantity != IGNORE and quantity not in TAKEN:
+        wanted = ", ".join([*UNITS_OF, IGNORE]) + f"; of conditions that hold for a whole trial {', '.join(KNOWN)}"
         raise RecordingSetError(_OPTION, f"'{quantity}' of '{text}' is no quantity; wanted one of {wanted}")
     if unit is not None and unit != STAMP:
         known = unit_named(unit)
-        allowed = UNITS_OF.get(quantity, ())
+        allowed = TAKEN.get(quantity, ())
+        if not allowed:
+            raise RecordingSetError(_OPTION, f"{quantity} has no unit; leave '[{unit}]' of '{text}' out")
         if known is None or known.si not in allowed:
             names = ", ".join(name for si in allowed for name in units_of(si))
             raise RecordingSetError(_OPTION, f"'{unit}' of '{text}' is no unit of {quantity}; wanted one of {names}")
+    if quantity in KNOWN and match["sign"] is not None:
+        raise RecordingSetError(_OPTION, f"{quantity} has no sign; leave 'by {match['sign']}' of '{text}' out")
     return Said(match["name"], quantity, unit, match["sign"])
 
 
@@ -78,6 +94,7 @@ class Assigned:
         said: what a user says, by name.
         unused: column -> why it is not used.
         questions: where several columns are equally good.
+        conditions: condition of a trial -> name of the column that holds it.
     """
 
     names: tuple[str, ...]
@@ -86,6 +103,7 @@ class Assigned:
     said: MappingOf[str, Said]
     unused: dict[str, str]
     questions: tuple[str, ...]
+    conditions: dict[str, str]
 
 
 def assign(files: Sequence[Columns], said: MappingOf[str, Said]) -> Assigned:
@@ -108,6 +126,8 @@ def assign(files: Sequence[Columns], said: MappingOf[str, Said]) -> Assigned:
             candidates.setdefault(quantity, []).append(name)
         else:
             unused[name] = why
+    conditions = {quantity: candidates.pop(quantity) for quantity in KNOWN if quantity in candidates}
+    _keep_constant(conditions, files, said, unused)
     _clock(columns, candidates, unused)
     chosen: dict[str, tuple[str, ...]] = {}
     questions = _measured_torque(candidates, readings, said)
@@ -120,7 +140,11 @@ def assign(files: Sequence[Columns], said: MappingOf[str, Said]) -> Assigned:
             listed = ", ".join(f"'{name}'" for name in tied)
             option = f"--take '{tied[0]}={quantity}[{UNITS_OF[quantity][0]}]'"
             questions.append(f"{listed} could each be the {quantity}: say which one, such as {option}")
-    return Assigned(tuple(columns), chosen, readings, said, unused, tuple(questions))
+    held = {}
+    for condition, (name, *others) in conditions.items():
+        held[condition] = name
+        unused |= dict.fromkeys(others, f"{name} is the {condition}")
+    return Assigned(tuple(columns), chosen, readings, said, unused, tuple(questions), held)
 
 
 def _quantity(name: str, values: object, reading: Reading, said: MappingOf[str, Said]) -> tuple[str, str]:
@@ -136,7 +160,31 @@ def _quantity(name: str, values: object, reading: Reading, said: MappingOf[str, 
     numbers = np.asarray(values)
     if not np.isfinite(numbers).any():
         return "", "empty"
-    return reading.quantity, "its name is not known"
+    if reading.quantity or not is_weight(reading.words):
+        return reading.quantity, "its name is not known"
+    return "", f"its name has no unit of a mass; where it is the load, say --take '{name}={LOAD}[kg]'"
+
+
+def _keep_constant(
+    conditions: dict[str, list[str]], files: Sequence[Columns], said: MappingOf[str, Said], unused: dict[str, str]
+) -> None:
+    """Of the columns that may hold a condition, those that keep one value in each file, and those that were said."""
+    for condition, names in list(conditions.items()):
+        changing = [name for name in names if name not in said and not all(_is_constant(one, name) for one in files)]
+        unused |= dict.fromkeys(changing, f"it changes within a trial, and {condition} has one value in each")
+        told = [name for name in names if name in said]
+        conditions[condition] = told + [name for name in names if name not in told and name not in changing]
+        if not conditions[condition]:
+            del conditions[condition]
+
+
+def _is_constant(columns: Columns, name: str) -> bool:
+    """Whether a column has one value, or is not there."""
+    numbers = columns.get(name, np.empty(0))
+    if isinstance(numbers, list):
+        return False
+    known = numbers[np.isfinite(numbers)]
+    return not len(known) or float(np.ptp(known)) <= SAME * float(np.abs(known).max())
 
 
 def _clock(columns: Columns, candidates: dict[str, list[str]], unused: dict[str, str]) -> None:

@@ -3,19 +3,19 @@
 import json
 from collections.abc import Mapping as MappingOf
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 import tomli_w
 
-from bench.config.rig import Rig
+from bench.recording_set.conditions import KNOWN
 from bench.recording_set.formats.column_table import Columns, listed
 from bench.recording_set.guess.assign import Assigned, Said, assign
 from bench.recording_set.guess.evidence import clock_units, rises
 from bench.recording_set.guess.names import UNITS_OF, is_named_by
 from bench.recording_set.guess.units_told import Units
-from bench.recording_set.mapping import Column, Mapping
+from bench.recording_set.mapping import ConditionColumn, Mapping
 from compensator.lab.recordings.recording import CHANNELS, FloatArray
 
 SIGNED = ("duty", "voltage", "current_command", "torque", "force", "current")  # of the drive, the nearest first
@@ -75,7 +75,7 @@ class Taken:
     """What a column is taken for.
 
     Attributes:
-        channel: of the recording; "" where it is not used.
+        channel: of the recording, or condition of the trial; "" where it is not used.
         low, high: of its values, in that unit; None of text.
         outline: some of its values over time, in that unit; empty of text.
     """
@@ -116,6 +116,7 @@ class Known:
     Attributes:
         rate_hz: of the samples, where no column is a time.
         supply_v: where no column holds it.
+        gear_ratio, rig_supply_v: of the rig, where that tells them.
     """
 
     said: MappingOf[str, Said]
@@ -123,6 +124,7 @@ class Known:
     rate_hz: float | None = None
     supply_v: float | None = None
     gear_ratio: float | None = None
+    rig_supply_v: float | None = None
 
 
 NOTHING = Known({})
@@ -135,9 +137,12 @@ def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
     units = Units([sheet.columns for sheet in sheets], assigned, known.counts_per_turn, rate_hz, known.gear_ratio)
     made = {quantity: units.column_of(quantity, names) for quantity, names in assigned.columns.items()}
     columns = {units.channel_of(quantity): column for quantity, column in made.items() if column is not None}
-    used = {name for column in columns.values() for name in column.sources}
+    conditions = {condition: _held(name, assigned) for condition, name in assigned.conditions.items()}
+    used = {name for column in columns.values() for name in column.sources} | set(assigned.conditions.values())
+    known, supply = _with_supply_of_rig(known, assigned)
     mapping = Mapping(
         columns=columns,
+        conditions=conditions,
         ignore="rest" if set(assigned.names) - used else [],
         rate_hz=rate_hz,
         stamps=units.clock.stamps,
@@ -145,10 +150,10 @@ def guess_mapping(sheets: Sequence[Sheet], known: Known = NOTHING) -> Guess:
         constants={} if known.supply_v is None else {"supply_v": known.supply_v},
         position_from_speed="position" not in assigned.columns and "velocity" in assigned.columns,
     )
-    notes = list(units.notes)
+    notes = [*units.notes, *supply]
     if mapping.position_from_speed:
         notes.append("no column is a position: it is the integral of the speed, from 0 in each trial")
-    taken = tuple(_taken(name, columns, units, assigned) for name in assigned.names)
+    taken = tuple(_taken(name, mapping, units, assigned) for name in assigned.names)
     unsigned = magnitude_questions([sheet.columns for sheet in sheets], assigned)
     missing = _missing(sheets, assigned, known, rate_hz)
     questions = (*assigned.questions, *units.questions, *unsigned, *missing, *_other_columns(sheets, assigned))
@@ -185,6 +190,15 @@ def _rising(sheets: Sequence[Sheet], assigned: Assigned) -> str:
     return "--take 'NAME=time[ms]'"
 
 
+def _with_supply_of_rig(known: Known, assigned: Assigned) -> tuple[Known, list[str]]:
+    """The same with the supply of the rig, and a note of it, where the duty needs one and nothing else tells it."""
+    needed = set(EFFORTS) & set(assigned.columns) == {"duty"} and "supply" not in assigned.columns
+    if not needed or known.supply_v is not None or known.rig_supply_v is None:
+        return known, []
+    note = f"the supply is {known.rig_supply_v:g} V throughout, as the rig says ([supply] voltage_v)"
+    return replace(known, supply_v=known.rig_supply_v), [note]
+
+
 def _missing(sheets: Sequence[Sheet], assigned: Assigned, known: Known, rate_hz: float | None) -> list[str]:
     """What every study needs."""
     there = listed(assigned.names)
@@ -205,15 +219,27 @@ def _missing(sheets: Sequence[Sheet], assigned: Assigned, known: Known, rate_hz:
     elif efforts == {"duty"} and "supply" not in assigned.columns and known.supply_v is None:
         found.append(
             "the duty is an effort only with the supply: say which column it is, --take 'NAME=supply[V]', or its "
-            "voltage, --supply-v 12"
+            "voltage, --supply-v 12, or in a rig [supply] voltage_v = 12"
         )
     return found
 
 
-def _taken(name: str, columns: MappingOf[str, Column], units: Units, assigned: Assigned) -> Taken:
+def _held(name: str, assigned: Assigned) -> ConditionColumn:
+    """How a condition is made of a column: in the unit that is said, else in that of its name."""
+    if name in assigned.said:
+        return ConditionColumn(source=name, unit=assigned.said[name].unit)
+    unit = assigned.readings[name].unit
+    return ConditionColumn(source=name, unit=None if unit is None or unit.name == unit.si else unit.name)
+
+
+def _taken(name: str, mapping: Mapping, units: Units, assigned: Assigned) -> Taken:
     low, high = units.range_of(name) or (None, None)
     outline = units.outline_of(name)
-    for channel, column in columns.items():
+    for condition, held in mapping.conditions.items():
+        if name == held.source:
+            why = "as said" if name in assigned.said else "its name; it keeps one value in each trial"
+            return Taken(name, condition, held.unit or KNOWN[condition], low, high, why, outline)
+    for channel, column in mapping.columns.items():
         if name in column.sources:
             unit = column.unit or CHANNELS[channel].unit
             return Taken(name, channel, unit, low, high, units.why.get(name, "its name"), outline)
@@ -232,7 +258,23 @@ def mapping_text(mapping: Mapping, notes: tuple[str, ...] = (), files: Sequence[
     plain = {name: value for name, value in values.items() if not isinstance(value, dict | list)}
     tables = {name: value for name, value in values.items() if name not in plain}
     head = "".join(f"# {note}\n" for note in notes)
-    return head + tomli_w.dumps(plain | tables) + _conditions_comment(files)
+    text = tomli_w.dumps(plain | tables).replace(POSITION, POSITION + ZERO_COMMENT if _has_zero(mapping) else POSITION)
+    return head + text + _conditions_comment(files, mapping)
+
+
+POSITION = "[columns.position_rad]\n"
+ZERO_COMMENT = """\
+# 0 has to be where the arm hangs straight down: gravity is taken as A sin(position). Where the log has another zero,
+# add the position that the joint has there, in rad whatever the unit of the column, here and in target_rad. Of a log
+# that is 0 at the level arm:
+# offset = 1.5708
+"""
+
+
+def _has_zero(mapping: Mapping) -> bool:
+    """Whether the angle is taken from a column, and nobody told where its zero lies."""
+    column = mapping.columns.get("position_rad")
+    return column is not None and column.offset == 0.0
 
 
 CONDITIONS_COMMENT = """
@@ -244,27 +286,12 @@ CONDITIONS_COMMENT = """
 """
 
 
-def _conditions_comment(files: Sequence[str]) -> str:
+def _conditions_comment(files: Sequence[str], mapping: Mapping) -> str:
     if not files:
         return ""
+    examples = {"load_kg": 0.1, "arm_m": 0.5}
+    told = ", ".join(f"{name} = {value:g}" for name, value in examples.items() if name not in mapping.conditions)
+    conditions = told or 'waveform = "slow sine"'
     names = [json.dumps(file, ensure_ascii=False) for file in files]
-    blocks = [f"# [[trials]]\n# file = {name}\n# conditions = {{ load_kg = 0.1, arm_m = 0.5 }}\n" for name in names]
+    blocks = [f"# [[trials]]\n# file = {name}\n# conditions = {{ {conditions} }}\n" for name in names]
     return CONDITIONS_COMMENT + "".join(blocks)
-
-
-RIG_COMMENT = """
-# What is known of motor, gear and arm, in numbers of your own:
-# [motor]
-# torque_constant_n_m_a = 0.05
-# [gear]
-# ratio = 20
-# [arm]
-# length_m = 0.5
-"""
-
-
-def rig_text(rig: Rig) -> str:
-    """The text of a rig.toml, as far as the rig is known; of one that is not, comments show the keys."""
-    told = rig.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
-    unknown = rig.joint == "rotary" and not {"motor", "gear", "arm"} & told.keys()
-    return tomli_w.dumps(told) + (RIG_COMMENT if unknown else "")

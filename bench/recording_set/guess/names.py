@@ -5,6 +5,7 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from bench.recording_set.conditions import KNOWN
 from bench.recording_set.units import ENDINGS, Unit, unit_named
 from compensator.lab.recordings.recording import CHANNELS
 
@@ -22,6 +23,9 @@ UNITS_OF = {
     "current_command": ("A",), "voltage": ("V",), "supply": ("V",), "duty": ("1",), "torque": ("N m",),
     "load_torque": ("N m",), "force": ("N",), "temperature": ("degC",), "enabled": ("1",),
 }  # fmt: skip
+LOAD = "load_kg"
+TAKEN = UNITS_OF | {name: (si,) if si else () for name, si in KNOWN.items()}
+"""What a column may be said to be, quantities of a channel and conditions of a trial, with their SI units."""
 _OF_CHANNEL = {f"{quantity}{ENDINGS[si]}": quantity for quantity, units in UNITS_OF.items() for si in units}
 
 
@@ -68,6 +72,10 @@ WORDS: tuple[tuple[str, frozenset[str]], ...] = (
         ),
     ),
 )
+WEIGHT = _listed(
+    "payload load mass weight hung hanging nutzlast last zusatzlast masse gewicht zusatzmasse zuladung charge carga "
+    "carico"
+)
 TARGET = _listed(
     "target ref reference setpoint set sp soll sollwert desired des cmd command commanded goal demand consigne wanted "
     "objetivo referencia dem"
@@ -79,6 +87,7 @@ DERIVED = _listed("filtered filt lp smooth estimate estimated est sim simulated 
 SENSOR = _listed("sensor cell loadcell transducer messwelle external extern output load brake bremse")
 DRIVE = _listed("motor drive servo actuator antrieb")
 OTHER_AXIS = _listed("d id ia ib ic phase a b c")  # of a vector drive: not what makes torque, as that of the supply
+OWN_MASS = DRIVE | _listed("arm link rotor body own gear gripper tool eigen cell loadcell sensor")
 JOINT_SIDE = _listed("joint output link arm load abtrieb gelenk")
 
 
@@ -87,7 +96,7 @@ class Reading:
     """What a name says.
 
     Attributes:
-        quantity: "" where nothing is known, or it is none that is used.
+        quantity: of a channel, or the condition of a load; "" where nothing is known, or it is none that is used.
         unit: None where it says none.
         score: how sure and how direct; the best of several columns of one quantity is taken.
         words: of the name.
@@ -110,6 +119,8 @@ def read_name(name: str) -> Reading:
     base, unit, clear = _unit(name[:LOOKED_AT])
     told = unit if clear else None
     words = _present(_words(base), told)
+    if unit is not None and unit.si == "kg" and is_weight(words):
+        return Reading(LOAD, unit, _score(words, unit, LOAD), words)
     quantity, unfit = _quantity(words, told), ""
     if unit is not None and quantity and unit.si not in UNITS_OF.get(quantity, (unit.si,)):
         if is_named_by(words, quantity) or unit.si == "1":
@@ -197,6 +208,11 @@ def _score(words: frozenset[str], unit: Unit | None, quantity: str) -> float:
     if quantity == "torque" and words & TARGET:
         score -= 3.0
     return score
+
+
+def is_weight(words: frozenset[str]) -> bool:
+    """Whether words name what was hung on the joint, and no mass of its own."""
+    return bool(words & WEIGHT) and not words & (OWN_MASS | TARGET | ERROR)
 
 
 def same_kind(names: Sequence[str]) -> bool:

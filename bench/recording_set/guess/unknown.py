@@ -8,6 +8,7 @@ import numpy as np
 
 from bench.config.rig import Rig, sensor_turns
 from bench.recording_set.checks import LARGEST
+from bench.recording_set.conditions import OTHER_UNITS
 from bench.recording_set.container import Container, open_container
 from bench.recording_set.errors import RecordingSetError
 from bench.recording_set.formats.column_table import Columns
@@ -16,6 +17,7 @@ from bench.recording_set.mapping import Mapping, Renamed
 from bench.recording_set.read import (
     MAPPING_FILE,
     RIG_FILE,
+    TELL_ARM,
     entries_of,
     name_of_set,
     own_mapping,
@@ -26,7 +28,7 @@ from bench.recording_set.read import (
 from bench.recording_set.recording_csv import read_columns
 from bench.recording_set.recording_set import RecordingSet
 from bench.recording_set.text.table import Table
-from bench.recording_set.trials_csv import OTHER_UNITS, TRIALS_FILE
+from bench.recording_set.trials_csv import TRIALS_FILE
 from compensator.lab.recordings.recording import CHANNELS, EVENT_COLUMN
 
 
@@ -89,7 +91,15 @@ def guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Gues
             )  # there no load counts
         except RecordingSetError as error:
             guess = replace(guess, questions=(f"an import refuses this: {error}",))
+    if "load_kg" in guess.mapping.conditions and not _is_arm_told(guess.mapping, rig):
+        note = f"a load is part of the model only where somebody tells where it hangs; {TELL_ARM}"
+        guess = replace(guess, notes=(*guess.notes, note))
     return guess, rig, notes
+
+
+def _is_arm_told(mapping: Mapping, rig: Rig) -> bool:
+    """Whether it is told where a load hangs, or a linear joint has no arm."""
+    return rig.joint != "rotary" or rig.arm.length_m is not None or "arm_m" in mapping.conditions
 
 
 def _guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Guess, Rig, tuple[str, ...]]:
@@ -100,6 +110,8 @@ def _guess_of(paths: Sequence[Path], rig: Rig | None, known: Known) -> tuple[Gue
         known = replace(known, counts_per_turn=own.sensor.counts_per_turn * (sensor_turns(own) or 1.0))
     if own is not None and own.gear.ratio is not None:
         known = replace(known, gear_ratio=own.gear.ratio)
+    if own is not None:
+        known = replace(known, rig_supply_v=own.supply.voltage_v)
     sheets, renamed, notes = read_sheets(paths)
     guess = guess_mapping(sheets, known)
     mapping = guess.mapping.model_copy(update={"trials_columns": renamed})

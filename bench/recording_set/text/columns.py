@@ -3,11 +3,12 @@
 import difflib
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
+from bench.recording_set.conditions import KNOWN, OTHER_UNITS, TEXTS
 from bench.recording_set.errors import RecordingSetError
-from bench.recording_set.mapping import SPEED_UNITS, Column, Mapping
+from bench.recording_set.mapping import SPEED_UNITS, Column, ConditionColumn, Mapping
 from bench.recording_set.units import ENDINGS, UNITS
 from compensator.lab.recordings.recording import CHANNELS, EVENT_COLUMN
 
@@ -24,6 +25,11 @@ TIME = "time_s"
 def suggestion(name: str) -> str:
     """A sentence for a column that is no channel: a conversion, or the nearest names; "" where nothing is near."""
     lower = name.lower()
+    if lower in KNOWN or lower in OTHER_UNITS:
+        condition = lower if lower in KNOWN else OTHER_UNITS[lower][0]
+        unit_told = "" if lower in KNOWN else f', unit = "{lower.rpartition("_")[2]}"'
+        how = f'conditions.{condition} = {{ from = "{name}"{unit_told} }}'
+        return f"{condition} is a condition of the whole trial; take it from the column with a mapping: {how}"
     for suffix, unit in _UNITS.items():
         channel = lower.removesuffix(f"_{suffix}") + ENDINGS[unit.si]
         if lower.endswith(f"_{suffix}") and channel in CHANNELS:
@@ -61,20 +67,24 @@ class Plan:
     Attributes:
         channels: channel -> the columns that it comes from; without constants and without the event.
         events: the column of events; None where there is none.
+        conditions: condition -> the column that holds it.
     """
 
     channels: dict[str, Column]
     events: str | None
+    conditions: dict[str, ConditionColumn] = field(default_factory=dict)
 
     @property
     def numbers(self) -> list[str]:
         """Columns of numbers."""
-        return _unique([name for one in self.channels.values() if not one.is_stamp for name in one.read])
+        held = [one.source for name, one in self.conditions.items() if name not in TEXTS]
+        return _unique([*(name for one in self.channels.values() if not one.is_stamp for name in one.read), *held])
 
     @property
-    def stamps(self) -> list[str]:
-        """Columns of dates and times."""
-        return _unique([name for one in self.channels.values() if one.is_stamp for name in one.sources])
+    def texts(self) -> list[str]:
+        """Columns of text: dates and times, and conditions in words."""
+        held = [one.source for name, one in self.conditions.items() if name in TEXTS]
+        return _unique([*(name for one in self.channels.values() if one.is_stamp for name in one.sources), *held])
 
 
 def _unique(names: Sequence[str]) -> list[str]:
@@ -106,11 +116,13 @@ def plan(table: Headed, mapping: Mapping) -> Plan:
         raise table.error(message, table.header_line)
     if mapping.position_from_speed and not set(SPEED_UNITS) & set(channels):
         raise table.error("has no speed that position_from_speed could integrate; map a velocity", table.header_line)
-    return Plan(channels, events.sources[0] if events else None)
+    held = {name: one for name, one in mapping.conditions.items() if one.source in table.header}
+    return Plan(channels, events.sources[0] if events else None, held)
 
 
 def _check_known(table: Headed, mapping: Mapping) -> None:
     wanted = {name for column in mapping.columns.values() for name in column.read}
+    wanted |= {column.source for column in mapping.conditions.values()}
     unknown = [
         name for name in table.header if not _is_known(name) and name not in wanted and not mapping.ignores(name)
     ]

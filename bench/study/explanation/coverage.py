@@ -103,7 +103,7 @@ def _held(
         lacking="" if ratio >= WIDE else "too narrow for the law of friction over speed",
     )
     yield Held(quantity="position", found=_position(found, unit), lacking=_position_lacks(dataset))
-    yield Held(quantity="loads", found=_loads(found.loads_kg), lacking=_loads_lack(found.loads_kg))
+    yield Held(quantity="loads", found=_loads(found.loads_kg), lacking=_loads_lack(found.loads_kg, dataset))
     yield Held(quantity="temperature", found=_warmth(found), lacking=_warmth_lacks(found, effects))
     yield Held(
         quantity="starts from rest",
@@ -142,7 +142,10 @@ def _loads(loads_kg: Sequence[float]) -> str:
     return ", ".join(f"{load:g}" for load in loads_kg[:8]) + (" ..." if len(loads_kg) > 8 else "") + " kg"
 
 
-def _loads_lack(loads_kg: Sequence[float]) -> str:
+def _loads_lack(loads_kg: Sequence[float], dataset: Dataset) -> str:
+    loaded = [trial.motion for trial in dataset.trials if trial.motion.load_kg != 0.0]
+    if any(motion.facts.joint == "rotary" and motion.arm_m == 0.0 for motion in loaded):
+        return "they count as none: where they hang is not told, arm.length_m of the rig"
     if len(loads_kg) < 2:
         return "effects of load cannot be told from others"
     return "" if len(loads_kg) >= FEWEST_LOADS else "two loads cannot tell a line from a curve"
