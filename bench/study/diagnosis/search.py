@@ -1,9 +1,10 @@
 """Several effects at once: search, and keep every model on the way as a rung of the ladder."""
 
 from bench.store import Store
-from bench.study.diagnosis.diagnose import answer_of, explained_by, outset_of
+from bench.study.diagnosis.diagnose import answer_of, explained_by, outset_of, root_of
 from bench.study.diagnosis.findings import findings_of_trials
 from bench.study.diagnosis.judged import diagnosis_of_model
+from bench.study.diagnosis.last_words import last_words, share_left
 from bench.study.errors import lab_errors
 from bench.study.joint import joint_of
 from bench.study.keep import kept_of, result_of, stored
@@ -64,6 +65,8 @@ def _searched(store: Store, study_id: int, model_id: int | None, most: int) -> t
             )
         )
         parent, before = child, step.held_out.relative
+    root = root_of(store, first)
+    added = [name for name in found.fit.names if name not in root.effects]
     explained, joint = explained_by(store, model_of(store, study_id, parent)), joint_of(store, material.definition)
     last = answer_of(found.fit, found.last, study_id, parent, explained, joint)
     searched = Searched(
@@ -75,7 +78,7 @@ def _searched(store: Store, study_id: int, model_id: int | None, most: int) -> t
         conclusion=last.conclusion,
         offered=last.offered,
         slight=last.slight,
-        sentence=last.advice if last.slight else last.sentence,
+        sentence=last_words(last, added, share_left(kept_of(root).held_out, before)),
         findings=findings_of_trials(found.fit, joint),
     )
     return searched, last
