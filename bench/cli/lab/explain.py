@@ -107,7 +107,8 @@ def explain(
     for sentence in found.sentences:
         say(sentence)
     if count := len(found.not_judged):
-        say(f"{count} {'effect was' if count == 1 else 'effects were'} not judged: see the report.")
+        were = "effect was" if count == 1 else "effects were"
+        say(f"{count} {were} not judged, the report says why: {', '.join(found.not_judged)}.")
     say(f"written: {report}; kept as study {found.study_id}")
 
 
