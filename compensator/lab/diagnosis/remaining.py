@@ -88,5 +88,6 @@ def _trial_names(fit: Fit) -> list[str]:
 def _structure_remains(name: str, driver: str, way: str) -> Note:
     """With an effect in the model, structure over a variable is left."""
     how = {FORCE: "", AGAINST_MOTION: " against the motion", TIMES_SPEED: " times the speed"}[way]
-    text = f"After {name}, structure over {driver_in_words(driver)}{how} remains; add it and diagnose again."
+    over = driver_in_words(f"{driver}{how}")
+    text = f"After {name}, structure over {over} remains; add it and diagnose again."
     return Note("structure-remains", text, {"effect": name, "driver": driver, "against_motion": way == AGAINST_MOTION})

@@ -16,9 +16,9 @@ def driver_in_words(driver: str) -> str:
     """What a residual varies with, as the page and reports have it: to people a velocity is a speed.
 
     Args:
-        driver: as in a diagnosis: a variable, or one "against motion" or "times speed"; or the title of a variable.
+        driver: as in a diagnosis: a variable, or one "against motion" or "times speed"; or the variable's title.
     """
-    return driver.replace("velocity", "speed")
+    return "speed with its sign" if driver == "velocity" else driver.replace("velocity", "speed")
 
 
 def missing_in_words(best: Candidate) -> str:
