@@ -11,7 +11,7 @@ from bench.study import ladder as module
 from bench.study.models.base import NEAR_REVERSALS, ROWS_IN_WORDS, EffortName
 from bench.study.models.kept import KeptModel
 from bench.study.models.ladder import Ladder, Rung, StepGain
-from bench.study.report.model_sections import ladder_section
+from bench.study.report.model_sections import UNLIKE, ladder_section
 from bench.study.report.report import summary
 
 
@@ -96,3 +96,8 @@ def test_the_table_marks_it_and_says_why(gain, told, capsys):
     assert "+ pre_sliding *" in printed
     assert told in printed
     assert ("50.0, 40.0 .. 60.0" in printed) == (gain is not None)
+
+
+def test_a_gain_that_is_unlike_the_errors_says_why():
+    weighted = JUDGED.model_copy(update={"held_out_after": 0.003})
+    assert ladder_section(climbed(0.0046, weighted)).sentences[-1] == UNLIKE

@@ -14,8 +14,10 @@ from bench.study.models.ladder import Ladder, Rung
 from bench.study.models.study import Study
 from bench.study.report.wording import condition_text
 from compensator.lab.chance import chance_cell
+from compensator.lab.model.gain import Gain
 from compensator.lab.rows.drivers import DRIVERS
 
+UNLIKE = "Errors count all rows alike; gains count each row by how well it is known."
 NO_SHARE = 1e-7  # less is rounding
 NO_GAIN = 5e-4  # less is shown as none
 SMALL_SHARE = 5e-4  # two digits after the point would say next to nothing of it
@@ -176,8 +178,12 @@ def marked_change(rung: Rung, change: str) -> str:
 
 
 def uncounted_in_words(found: Ladder) -> list[str]:
-    """A sentence for each change that shows where the errors of the ladder do not count."""
-    return [_uncounted(rung) for rung in found.rungs if rung.shows]
+    """A sentence for each change that shows where the errors of the ladder do not count; and why gains are unlike."""
+    gains = [one.gain for one in found.rungs if one.gain is not None]
+    unlike = any(
+        Gain(one.gain, one.gain_low, one.gain_high).is_unlike(one.held_out_before, one.held_out_after) for one in gains
+    )
+    return [*(_uncounted(rung) for rung in found.rungs if rung.shows), *([UNLIKE] if unlike else [])]
 
 
 def _uncounted(rung: Rung) -> str:
