@@ -4,7 +4,7 @@ from bench.store import Store
 from bench.store.records import ModelRow
 from bench.study.compare import fitted_parameters
 from bench.study.errors import StudyError, lab_errors
-from bench.study.keep import kept_of, result_of, stored
+from bench.study.keep import gain_of, kept_of, result_of, stored
 from bench.study.material import Material, load, model_of
 from bench.study.models.base import ROWS_IN_WORDS
 from bench.study.models.change import BeforeAfter, BreakawayChange, Changed
@@ -89,7 +89,8 @@ def _change(store: Store, material: Material, parent: ModelRow, effects: list[st
     if starts is not None:
         error = "held-out error of the breakaway effort"
         sentence += " " + _sentence(done, effect, error, starts[0].relative, starts[1].relative, held_out_gain(*starts))
-    result = result_of(fit, held_out(fit))
+    judged = gain_of(rows, before.relative, after.relative, gain)
+    result = result_of(fit, held_out(fit)).model_copy(update={"gain": judged})
     model_id = store.add_model(material.study_id, parent.id, effects, stored(result))
     return Changed(
         model_id=model_id,

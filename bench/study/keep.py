@@ -3,13 +3,14 @@
 from bench.json_types import Values
 from bench.store import Store
 from bench.store.records import ModelRow
+from bench.study.models.base import ROWS_IN_WORDS, STARTS
 from bench.study.models.kept import KeptModel
-from bench.study.models.ladder import BreakawayRung
+from bench.study.models.ladder import BreakawayRung, StepGain
 from compensator.lab.at_rest.breakaway_comparison import compare_breakaway
 from compensator.lab.comparison.comparison import repeatability_floor
 from compensator.lab.effects.catalogue import catalogue
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.gain import error_interval
+from compensator.lab.model.gain import Gain, error_interval
 from compensator.lab.model.held_out_error import HeldOut, relative_error
 from compensator.lab.model.validation import held_out
 
@@ -49,6 +50,25 @@ def breakaway_result(fit: Fit) -> BreakawayRung | None:
         held_out=found.held_out.relative,
         held_out_low=low,
         held_out_high=high,
+    )
+
+
+def gain_of(rows: str, before: float, after: float, gain: Gain) -> StepGain:
+    """The gain of a change as it is kept.
+
+    Args:
+        rows: that it was judged on, a row choice or "breakaway".
+        before: relative held-out error of these rows, 0..1.
+        after: the same with the change.
+        gain: of these rows.
+    """
+    return StepGain(
+        rows=ROWS_IN_WORDS.get(rows, STARTS),
+        held_out_before=before,
+        held_out_after=after,
+        gain=gain.value,
+        gain_low=gain.low,
+        gain_high=gain.high,
     )
 
 

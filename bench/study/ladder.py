@@ -1,5 +1,6 @@
 """The ladder: error falling from model to model, down towards the repeatability floor."""
 
+from collections.abc import Collection
 from math import isnan
 
 from bench.store import Store
@@ -7,11 +8,13 @@ from bench.store.records import ModelRow
 from bench.study.errors import StudyError
 from bench.study.keep import kept_of
 from bench.study.material import load
-from bench.study.models.base import ROWS_IN_WORDS
-from bench.study.models.kept import KeptMotion
+from bench.study.models.base import NEAR_REVERSALS, ROWS_IN_WORDS, STARTS
+from bench.study.models.kept import KeptModel, KeptMotion
 from bench.study.models.ladder import Ladder, Rung, RungMotion
 from bench.study.models.stages import LOADED
 from compensator.lab import progress
+from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.rows.dataset import Dataset
 
 
 @progress.stages(LOADED)
@@ -34,11 +37,11 @@ def ladder(store: Store, study_id: int) -> Ladder:
         effort=material.effort,
         floor=min(alike, key=lambda kept: (isnan(kept.held_out), kept.held_out)).floor,
         rows=ROWS_IN_WORDS[material.dataset.rows],
-        rungs=[_rung(model, by_id.get(model.parent_id or 0)) for model in models],
+        rungs=[_rung(model, by_id.get(model.parent_id or 0), material.dataset) for model in models],
     )
 
 
-def _rung(model: ModelRow, parent: ModelRow | None) -> Rung:
+def _rung(model: ModelRow, parent: ModelRow | None, dataset: Dataset) -> Rung:
     before = set(parent.effects) if parent else set(model.effects)
     added, removed = set(model.effects) - before, before - set(model.effects)
     kept = kept_of(model)
@@ -57,7 +60,18 @@ def _rung(model: ModelRow, parent: ModelRow | None) -> Rung:
         trials=kept.trials,
         motion=None if kept.closed_loop is None else _motion(kept.closed_loop),
         reflected_error_g=None if kept.bench is None else kept.bench.reflected_error_g,
+        gain=kept.gain,
+        shows=_shows(kept, added or removed, dataset),
     )
+
+
+def _shows(kept: KeptModel, changed: Collection[str], dataset: Dataset) -> str:
+    """Where a change of these effects shows, though the study's rows do not hold that; empty where they do."""
+    if kept.gain is not None and kept.gain.rows == STARTS:
+        return STARTS
+    if not changed or dataset.choice_for([effect_named(name) for name in changed]) == dataset.rows:
+        return ""
+    return NEAR_REVERSALS
 
 
 def _motion(kept: KeptMotion) -> RungMotion:

@@ -197,7 +197,7 @@ def test_a_file_that_must_be_asked_about_is_not_explained(command, tmp_path):
     assert json.loads(command("experiments", "--json").stdout) == []
 
 
-def test_how_many_effects_were_not_judged_is_said_beside_the_report(command, tmp_path):
+def test_which_effects_were_not_judged_is_said_beside_the_report(command, tmp_path):
     random, files = np.random.default_rng(3), []
     time_s = np.arange(0.0, 12.0, 0.005)
     for sign in (1.0, -1.0):
@@ -214,7 +214,11 @@ def test_how_many_effects_were_not_judged_is_said_beside_the_report(command, tmp
     sections = (tmp_path / "shaft.html").read_text().split("<h2")
     count = next(one.count("Not judged: ") for one in reversed(sections) if "Not judged: " in one)  # of the last model
     assert count > 0
-    assert f"{count} effects were not judged: see the report." in result.stdout.replace("\n", " ")
+    told = re.search(
+        rf"{count} effects were not judged, the report says why: ([a-z_, ]+)\.", " ".join(result.stdout.split())
+    )
+    assert told, result.stdout
+    assert len(told[1].split(", ")) == count
 
 
 def test_loads_that_nobody_told_are_asked_for(command, tmp_path):

@@ -300,6 +300,10 @@ def test_a_search_keeps_every_model_on_its_way(store, experiment_id):
     assert step.model_id == better.model_id == found.model_id
     assert (step.before, step.after) == pytest.approx((base.held_out, better.held_out))
     assert step.sentence.startswith("Added viscous_asymmetry: held-out error ")
+    assert base.gain is None
+    assert (better.gain.rows, better.shows) == ("steady sliding", "")
+    assert better.gain.held_out_before == pytest.approx(base.held_out, rel=0.01)
+    assert better.gain.gain_low < better.gain.gain < better.gain.gain_high
 
 
 def test_an_effect_with_memory_is_judged_where_it_lives_and_the_ladder_where_the_study_looks(store):
@@ -314,6 +318,9 @@ def test_an_effect_with_memory_is_judged_where_it_lives_and_the_ladder_where_the
     assert regimes["transient"] < 0.5 * before["transient"]
     rungs = ladder(store, number).rungs
     assert rungs[1].held_out < rungs[0].held_out < change.before.held_out
+    kept = rungs[1].gain
+    assert (rungs[1].shows, kept.rows, kept.gain_low) == ("near reversals", change.rows, change.gain_low)
+    assert (kept.held_out_before, kept.held_out_after) == (change.before.held_out, change.after.held_out)
 
 
 @pytest.mark.parametrize(("after", "told"), [(0.23, True), (0.0315, False)])

@@ -4,7 +4,7 @@ import shlex
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from bench.cli.lab.study_tables import HELD_OUT
+from bench.cli.lab.study_tables import GAIN, HELD_OUT, tenths
 from bench.cli.output import percent, say, table, text
 from bench.json_types import as_option
 from compensator.lab.chance import chance_cell
@@ -61,22 +61,17 @@ def _ranking(ranking: Sequence["Ranked"], held_out_kind: str) -> None:
             one.score,
             percent(one.held_out_before),
             percent(one.held_out_after),
-            f"{_tenths(one.gain)}, {_tenths(one.gain_low)} .. {_tenths(one.gain_high)}",
+            f"{tenths(one.gain)}, {tenths(one.gain_low)} .. {tenths(one.gain_high)}",
             text(one.d_prime),
         )
         for one in ranking
     ]
     if rows:
-        columns = ["effect", "score#", "before#", "after#", "gain, low .. high [%]#", "d'#"]
+        columns = ["effect", "score#", "before#", "after#", f"{GAIN}#", "d'#"]
         table(f"Effects by evidence: {ORDER}", columns, rows)
         say(" ".join(filter(None, (HELD_OUT[held_out_kind], numbers_explained(ranking)))))
         for line in why_not_named(ranking):
             say(line)
-
-
-def _tenths(share: float) -> str:
-    """A share as per cent, to a tenth; nothing has no sign."""
-    return f"{round(100.0 * share, 1) + 0.0:.1f}"
 
 
 def why_not_named(ranking: Sequence["Ranked"]) -> list[str]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from bench.cli.bench_session import session_of
+from bench.cli.lab.study_tables import GAIN, gain_text
 from bench.cli.output import Json, console, free_page, percent, print_json, refuse_taken, say, table, write_whole
 from bench.cli.records.guessed import (
     CountsPerTurn,
@@ -24,6 +25,7 @@ if TYPE_CHECKING:  # imported when needed: `--help` starts at once
 
     from bench.recording_set.guess import Guess
     from bench.report import Section
+    from bench.study.explanation.explain import Explained
     from bench.study.models.ladder import Rung
 
 _REPORT = "Report to write; without it explain-NAME.html, or explain-NAME-2.html and so on where that is there."
@@ -54,7 +56,6 @@ def explain(
     from bench.recording_set.guess import read_unknown
     from bench.study.explanation.explain import STEPS, NeverSlidError
     from bench.study.explanation.explain import explain as explain_experiment
-    from bench.study.report.model_sections import change_of
 
     chosen_rig = None if rig is None else read_rig(rig)
     if mapping is None:
@@ -90,6 +91,19 @@ def explain(
     if as_json:
         print_json({"report": str(report), **found.as_json()})
         return
+    _say_tables(found)
+    for sentence in found.sentences:
+        say(sentence)
+    if count := len(found.not_judged):
+        were = "effect was" if count == 1 else "effects were"
+        say(f"{count} {were} not judged, the report says why: {', '.join(found.not_judged)}.")
+    say(f"written: {report}; kept as study {found.study_id}")
+
+
+def _say_tables(found: "Explained") -> None:
+    """What the data can tell, and the error from model to model."""
+    from bench.study.report.model_sections import change_of, marked_change, uncounted_in_words
+
     table(
         "What these data can and cannot tell",
         ["of", "found", "what that leaves open"],
@@ -98,17 +112,21 @@ def explain(
     say(found.coverage.sentence)
     table(
         "Error from model to model",
-        ["model#", "change", "training#", "held out#", "90 % interval"],
+        ["model#", "change", "training#", "held out#", "90 % interval", f"{GAIN}#"],
         [
-            (one.model_id, change_of(one), percent(one.training), percent(one.held_out), _interval(one))
+            (
+                one.model_id,
+                marked_change(one, change_of(one)),
+                percent(one.training),
+                percent(one.held_out),
+                _interval(one),
+                gain_text(one),
+            )
             for one in found.rungs.rungs
         ],
     )
-    for sentence in found.sentences:
+    for sentence in uncounted_in_words(found.rungs):
         say(sentence)
-    if count := len(found.not_judged):
-        say(f"{count} {'effect was' if count == 1 else 'effects were'} not judged: see the report.")
-    say(f"written: {report}; kept as study {found.study_id}")
 
 
 def _say_what_holds(sentence: str, report: Path, experiment_id: int, as_json: bool) -> None:

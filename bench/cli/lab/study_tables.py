@@ -234,23 +234,45 @@ def change(found: "Changed") -> None:
         _parameters("Its parameters in breakaway, 95 % intervals", found.breakaway.parameters)
 
 
+GAIN = "gain, low .. high [%]"
+
+
+def gain_text(rung: "Rung") -> str:
+    """The gain of a rung's change, with its 90 % interval."""
+    one = rung.gain
+    return "" if one is None else f"{tenths(one.gain)}, {tenths(one.gain_low)} .. {tenths(one.gain_high)}"
+
+
+def tenths(share: float) -> str:
+    """A share as per cent, to a tenth; nothing has no sign."""
+    return f"{round(100.0 * share, 1) + 0.0:.1f}"
+
+
 def ladder(found: "Ladder") -> None:
     """The rungs."""
+    from bench.study.report.model_sections import (  # imported when needed: `--help` starts at once
+        marked_change,
+        uncounted_in_words,
+    )
+
     rows = [
         (
             one.model_id,
-            _change(one),
+            marked_change(one, _change(one)),
             percent(one.training),
             share_interval(one.held_out, one.held_out_low, one.held_out_high),
+            gain_text(one),
             percent(one.breakaway.held_out) if one.breakaway else "",
             f"{one.motion.position:.3g} {one.motion.unit}" if one.motion else "",
             one.reflected_error_g,
         )
         for one in found.rungs
     ]
-    errors = ["training error#", "held-out error#", "breakaway#", "position in closed loop#"]
+    errors = ["training error#", "held-out error#", f"{GAIN}#", "breakaway#", "position in closed loop#"]
     columns = ["model#", "change", *errors, "reflected load, error [g]#"]
     table(f"Ladder of study {found.study_id}: errors in the effort, {found.rows}", columns, rows)
+    for sentence in uncounted_in_words(found):
+        say(sentence)
     if kind := found.rungs[-1].held_out_kind:
         say(HELD_OUT[kind])
     if found.floor is not None:

@@ -81,9 +81,14 @@ def explained_by(store: Store, model: ModelRow) -> float:
 
 def outset_of(store: Store, model: ModelRow) -> float:
     """Held-out error of the first model of the lineage, relative, 0..1."""
+    return kept_of(root_of(store, model)).held_out
+
+
+def root_of(store: Store, model: ModelRow) -> ModelRow:
+    """The first model of the lineage."""
     while model.parent_id is not None:
         model = store.model(model.parent_id)
-    return kept_of(model).held_out
+    return model
 
 
 def _advice(found: diagnosis.Diagnosis, explained: float) -> str:

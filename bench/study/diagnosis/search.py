@@ -1,13 +1,15 @@
 """Several effects at once: search, and keep every model on the way as a rung of the ladder."""
 
 from bench.store import Store
-from bench.study.diagnosis.diagnose import answer_of, explained_by, outset_of
+from bench.study.diagnosis.diagnose import answer_of, explained_by, outset_of, root_of
 from bench.study.diagnosis.findings import findings_of_trials
 from bench.study.diagnosis.judged import diagnosis_of_model
+from bench.study.diagnosis.last_words import last_words, share_left
 from bench.study.errors import lab_errors
 from bench.study.joint import joint_of
-from bench.study.keep import kept_of, result_of, stored
+from bench.study.keep import gain_of, kept_of, result_of, stored
 from bench.study.material import load, model_of
+from bench.study.models.base import ROWS_IN_WORDS, STARTS
 from bench.study.models.change import Searched, SearchStep
 from bench.study.models.diagnosis import Diagnosis
 from bench.study.models.stages import DIAGNOSING, LOADED
@@ -50,6 +52,8 @@ def _searched(store: Store, study_id: int, model_id: int | None, most: int) -> t
     steps: list[SearchStep] = []
     for step in found.steps:
         result = result_of(step.fit, step.held_out)
+        if (one := step.judged) is not None:
+            result = result.model_copy(update={"gain": gain_of(one.rows, one.before, one.after, one.gain)})
         child = store.add_model(study_id, parent, list(step.fit.names), stored(result))
         steps.append(
             SearchStep(
@@ -64,6 +68,8 @@ def _searched(store: Store, study_id: int, model_id: int | None, most: int) -> t
             )
         )
         parent, before = child, step.held_out.relative
+    root = root_of(store, first)
+    added = [name for name in found.fit.names if name not in root.effects]
     explained, joint = explained_by(store, model_of(store, study_id, parent)), joint_of(store, material.definition)
     last = answer_of(found.fit, found.last, study_id, parent, explained, joint)
     searched = Searched(
@@ -75,16 +81,21 @@ def _searched(store: Store, study_id: int, model_id: int | None, most: int) -> t
         conclusion=last.conclusion,
         offered=last.offered,
         slight=last.slight,
-        sentence=last.advice if last.slight else last.sentence,
+        sentence=last_words(last, added, share_left(kept_of(root).held_out, before)),
         findings=findings_of_trials(found.fit, joint),
     )
     return searched, last
 
 
+_ELSEWHERE = {"moving": ROWS_IN_WORDS["moving"], "breakaway": STARTS}  # of which the ladder's errors say nothing
 _DONE = {"add": "Added", "swap": "Took", "drop": "Dropped"}
 
 
 def _sentence(step: Step, before: float) -> str:
     instead = f" instead of {step.instead_of}" if step.instead_of else ""
-    told = f"{_DONE[step.change]} {step.effect}{instead}: held-out error {before:.2%} to {step.held_out.relative:.2%}."
+    errors, after = "held-out error", step.held_out.relative
+    if step.judged is not None and step.judged.rows in _ELSEWHERE and step.judged.rows != step.fit.dataset.rows:
+        errors = f"held-out error, {_ELSEWHERE[step.judged.rows]},"
+        before, after = step.judged.before, step.judged.after
+    told = f"{_DONE[step.change]} {step.effect}{instead}: {errors} {before:.2%} to {after:.2%}."
     return told if not step.rivals else f"{told} These trials cannot tell it from {' or '.join(step.rivals)}."

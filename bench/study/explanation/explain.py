@@ -31,9 +31,8 @@ from bench.study.report.model_sections import (
     residual_section,
     worst_trial,
 )
-from bench.study.report.report import head_section, summary
+from bench.study.report.report import head_section, left_in_words, summary
 from bench.study.report.wording import in_words
-from compensator.lab.diagnosis.run_to_run import WEIGHT
 from compensator.lab.effects.catalogue import effect_named
 from compensator.lab.errors import NeverSlidesError
 from compensator.lab.recordings.effort import choose_effort
@@ -148,8 +147,7 @@ def explain(
     rungs = ladder(store, study_id)
     study = describe(store, study_id)
     pictures = [ladder_figure(rungs), measured_figure(before, now)]
-    loads = [one.text for one in last.findings if one.values.get("what") == WEIGHT]  # what it says rests on them
-    left = " ".join([last.advice if last.slight else last.sentence, *loads])
+    left = left_in_words(last, rungs)
     head = head_section(study, rungs, left, store, pictures, confused)
     sections = [
         measured_section(study, store),

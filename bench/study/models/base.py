@@ -14,6 +14,7 @@ LEAST_P = f"{LEAST_STATED:g} stands for that and less: no smaller chance can be 
 
 ROWS_IN_WORDS = {"sliding": "steady sliding", "moving": "near reversals too", "all": "at rest too"}
 """Which rows an error is of: each holds those before it."""
+NEAR_REVERSALS, STARTS = "near reversals", "at starts from rest"
 
 Condition = float | str | bool
 Role = Literal["training", "held_out"]

@@ -7,7 +7,7 @@ from pydantic import Field
 from bench.json_types import Number
 from bench.study.models.base import StudyModel
 from bench.study.models.closed_loop import LoopError, PositionUnit
-from bench.study.models.ladder import BreakawayRung
+from bench.study.models.ladder import BreakawayRung, StepGain
 
 
 class KeptMotion(StudyModel):
@@ -41,6 +41,7 @@ class KeptModel(StudyModel):
     coefficients: dict[str, list[float]] = Field(default={})
     closed_loop: KeptMotion | None = None
     bench: KeptBench | None = None
+    gain: StepGain | None = None
 
 
 class Used(StudyModel):

@@ -27,6 +27,20 @@ class RungMotion(StudyModel):
     unit: Literal["rad", "m"]
 
 
+class StepGain(StudyModel):
+    """What a change of the model did to the held-out error on the rows that it was judged on; relative (0..1).
+
+    Gain is the fall of that error, each row counting by how well it is known, with a 90 % interval.
+    """
+
+    rows: str = Field(description="which rows it was judged on", examples=["near reversals too"])
+    held_out_before: Number
+    held_out_after: Number
+    gain: Number
+    gain_low: Number
+    gain_high: Number
+
+
 class Rung(StudyModel):
     """One model of the ladder; errors are relative (0..1)."""
 
@@ -45,6 +59,14 @@ class Rung(StudyModel):
     motion: RungMotion | None = Field(description="null: not simulated in closed loop yet")
     reflected_error_g: float | None = Field(
         description="error of the reflected load in motion with the model at work on the bench, rms; null: not tried"
+    )
+    gain: StepGain | None = Field(
+        default=None, description="that of its change; null: a first model, more trials, or a model of older versions"
+    )
+    shows: str = Field(
+        default="",
+        description="where its change shows, though these errors do not count that; empty where they do",
+        examples=["near reversals"],
     )
 
 

@@ -7,14 +7,17 @@ from textwrap import wrap
 from bench.report import Bars, Figure, Line, Points, Section, Table
 from bench.report.wording import unit_text
 from bench.store import Store
+from bench.study.models.base import ROWS_IN_WORDS, STARTS
 from bench.study.models.closed_loop import ClosedLoop, LoopError, TrialInLoop
 from bench.study.models.comparison import AtRest, Comparison, FittedParameter, ResidualAgainst, TrialError
 from bench.study.models.ladder import Ladder, Rung
 from bench.study.models.study import Study
 from bench.study.report.wording import condition_text
 from compensator.lab.chance import chance_cell
+from compensator.lab.model.gain import Gain
 from compensator.lab.rows.drivers import DRIVERS
 
+UNLIKE = "Errors count all rows alike; gains count each row by how well it is known."
 NO_SHARE = 1e-7  # less is rounding
 NO_GAIN = 5e-4  # less is shown as none
 SMALL_SHARE = 5e-4  # two digits after the point would say next to nothing of it
@@ -88,10 +91,11 @@ def ladder_section(found: Ladder) -> Section:
     rows = [
         (
             rung.model_id,
-            change_of(rung),
+            marked_change(rung, change_of(rung)),
             percent(rung.training),
             percent(rung.held_out),
             f"{percent(rung.held_out_low)} .. {percent(rung.held_out_high)}",
+            gain_cell(rung.gain.gain, rung.gain.gain_low, rung.gain.gain_high) if rung.gain else "-",
             _HOW.get(rung.held_out_kind, rung.held_out_kind),
             percent(rung.breakaway.held_out) if rung.breakaway else "",
             rung.reflected_error_g,
@@ -104,6 +108,7 @@ def ladder_section(found: Ladder) -> Section:
         "training#",
         "held out#",
         "90 % interval",
+        "gain, 90 % interval",
         "how",
         "breakaway#",
         "reflected load [g]#",
@@ -118,7 +123,8 @@ def ladder_section(found: Ladder) -> Section:
                 if floor is None
                 else f"Floor: repeated trials differ by {floor:.2%} among themselves, as far as the best model can "
                 "tell. Only an effect with memory can go below."
-            )
+            ),
+            *uncounted_in_words(found),
         ],
         [Table("Models", columns, rows)],
     )
@@ -164,6 +170,33 @@ def change_of(rung: Rung) -> str:
         return "base: " + ", ".join(rung.effects).replace("_", " ")
     signs = [f"+ {rung.added}" if rung.added else "", f"- {rung.removed}" if rung.removed else ""]
     return ", ".join(filter(None, signs)).replace("_", " ") or f"the same, {rung.trials} trials"
+
+
+def marked_change(rung: Rung, change: str) -> str:
+    """A change in a table of errors; one with a mark is explained by `uncounted_in_words`."""
+    return f"{change} *" if rung.shows else change
+
+
+def uncounted_in_words(found: Ladder) -> list[str]:
+    """A sentence for each change that shows where the errors of the ladder do not count; and why gains are unlike."""
+    gains = [one.gain for one in found.rungs if one.gain is not None]
+    unlike = any(
+        Gain(one.gain, one.gain_low, one.gain_high).is_unlike(one.held_out_before, one.held_out_after) for one in gains
+    )
+    return [*(_uncounted(rung) for rung in found.rungs if rung.shows), *([UNLIKE] if unlike else [])]
+
+
+def _uncounted(rung: Rung) -> str:
+    name = (rung.added or rung.removed or "").replace("_", " ")
+    return f"* {name[:1].upper()}{name[1:]} shows {rung.shows}, which these errors do not count{judged_there(rung)}."
+
+
+def judged_there(rung: Rung) -> str:
+    """What a change did to the error where it shows, as the end of a sentence; empty where that was not kept."""
+    if rung.gain is None or rung.gain.rows not in (ROWS_IN_WORDS["moving"], STARTS):
+        return ""
+    counting = "there the error went" if rung.gain.rows == STARTS else "counting them, too, the error went"
+    return f": {counting} from {percent(rung.gain.held_out_before)} to {percent(rung.gain.held_out_after)}"
 
 
 def model_section(found: Comparison) -> Section:

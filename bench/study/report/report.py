@@ -13,14 +13,17 @@ from bench.study.closed_loop import simulate
 from bench.study.compare import compare
 from bench.study.create import describe
 from bench.study.diagnosis.diagnose import diagnose
+from bench.study.diagnosis.last_words import last_words, listed, share_left
 from bench.study.ladder import ladder
 from bench.study.models.comparison import Comparison
-from bench.study.models.ladder import Ladder
+from bench.study.models.diagnosis import Diagnosis
+from bench.study.models.ladder import Ladder, Rung
 from bench.study.models.stages import DIAGNOSING, MOVING, REPORT, SUGGESTING
 from bench.study.models.study import Study
 from bench.study.report.diagnosis_sections import diagnosis_section, provenance_section, suggestion_section
 from bench.study.report.model_sections import (
     closed_loop_section,
+    judged_there,
     ladder_figure,
     ladder_section,
     measured_figure,
@@ -34,6 +37,7 @@ from bench.study.suggestion.suggest import suggest
 from compensator.lab import progress
 
 NOT_TOLD = "not told"
+LEAST_FALL = 0.05  # of an error that counts steady sliding, for which an effect near reversals is given the credit
 _JUDGED_BY = {
     "leave-one-trial-out": "each of which was left out in turn to judge the model",
     "leave-one-block-out": "too few to leave one out; stretches of 2 s were left out instead",
@@ -65,7 +69,9 @@ def summary(study: Study, rungs: Ladder, diagnosis: str, confused: Sequence[str]
     """What was measured, what the model is off by, what in it could be another name, what it lacks."""
     held = sum(one.role == "held_out" for one in study.trials)
     first, last = rungs.rungs[0], rungs.rungs[-1]
-    added = [name.replace("_", " ") for name in last.effects if name not in first.effects]
+    elsewhere = _shown_elsewhere(rungs)
+    uncounted = [name for name in added_in(rungs) if name in elsewhere]
+    added = [name for name in added_in(rungs) if name not in elsewhere]
     error = f"{percent(last.held_out)} ({percent(last.held_out_low)} .. {percent(last.held_out_high)})"
     if added:
         off = f"With {listed(added)} the error goes from {percent(first.held_out)} to {error} of the effort"
@@ -76,15 +82,26 @@ def summary(study: Study, rungs: Ladder, diagnosis: str, confused: Sequence[str]
     return [
         f"{many} {'were' if len(study.trials) != 1 else 'was'} measured{f', {judged}' if judged else ''}.",
         f"{off}, on {'stretches' if 'block' in last.held_out_kind else 'trials'} that it was not fitted to.",
+        *(_added_elsewhere(name, elsewhere[name]) for name in uncounted),
         *confused,
         diagnosis,
     ]
 
 
-def listed(names: Sequence[str]) -> str:
-    """`a, b and c`."""
-    *first, last = names
-    return f"{', '.join(first)} and {last}" if first else last
+def _shown_elsewhere(rungs: Ladder) -> dict[str, Rung]:
+    """Steps that added what the errors of the ladder do not tell of: neither by their rows nor by a fall."""
+    before = {one.model_id: one.held_out for one in rungs.rungs}
+    return {
+        (one.added or "").replace("_", " "): one
+        for one in rungs.rungs
+        if one.shows and not one.held_out < (1.0 - LEAST_FALL) * before.get(one.parent_id or 0, one.held_out)
+    }
+
+
+def _added_elsewhere(name: str, rung: Rung) -> str:
+    """Of an effect that the errors of the ladder do not tell of."""
+    shows = f"{name[:1].upper()}{name[1:]} was added, too: it shows {rung.shows}, which this error does not count"
+    return f"{shows}{judged_there(rung).replace(':', ';', 1)}."
 
 
 def _days(experiments: Iterable[Experiment]) -> str:
@@ -130,7 +147,8 @@ def report(store: Store, study_id: int, configuration: BenchConfiguration | None
     progress.enter(DIAGNOSING)
     if first != newest:
         sections.append(_missing(f"What was missing from the first model, {first}", store, before)[1])
-    sentence, last = _missing(f"What is missing from the newest model, {newest}", store, now)
+    title = f"What is missing from the newest model, {newest}"
+    sentence, last = _missing(title, store, now, rungs)
     pictures = [ladder_figure(rungs), measured_figure(before, now)]
     sections = [head_section(study, rungs, sentence, store, pictures), *sections, last]
     progress.enter(SUGGESTING)
@@ -140,14 +158,26 @@ def report(store: Store, study_id: int, configuration: BenchConfiguration | None
     return f"Study {study_id}: {study.name}", in_words(sections, [one.name for one in study.trials])
 
 
-def _missing(title: str, store: Store, compared: Comparison) -> tuple[str, Section]:
+def added_in(rungs: Ladder) -> list[str]:
+    """Effects that the last model has and the first one had not, as they are shown."""
+    first, last = rungs.rungs[0], rungs.rungs[-1]
+    return [name.replace("_", " ") for name in last.effects if name not in first.effects]
+
+
+def left_in_words(found: Diagnosis, rungs: Ladder) -> str:
+    """What the last model of a ladder lacks, beside what was added to the first one."""
+    first, last = rungs.rungs[0], rungs.rungs[-1]
+    return last_words(found, added_in(rungs), share_left(first.held_out, last.held_out))
+
+
+def _missing(title: str, store: Store, compared: Comparison, rungs: Ladder | None = None) -> tuple[str, Section]:
     """What a model lacks, in a sentence and as a section; why nobody can tell where these trials show nothing."""
     try:
         found = diagnose(store, compared.study_id, compared.model_id)
     except BenchError as error:
         why = f"What is missing cannot be judged: {error}."
         return why, Section(title, [why])
-    return found.sentence, diagnosis_section(title, found, compared)
+    return found.sentence if rungs is None else left_in_words(found, rungs), diagnosis_section(title, found, compared)
 
 
 def _next(store: Store, study_id: int, configuration: BenchConfiguration) -> Section:

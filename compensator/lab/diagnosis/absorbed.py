@@ -1,6 +1,6 @@
 """What a model's own offset may be: friction that differs by direction hides in it, and is missing in no residual."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 from compensator.lab.diagnosis.note import Note, Value
 from compensator.lab.effects.catalogue import effect_named
@@ -27,13 +27,21 @@ def absorbed(fit: Fit, left_out: Collection[str]) -> list[Note]:
     if share < LEAST_SHARE:
         return []
     hidden = [one for one in map(effect_named, left_out) if OFFSET in one.hidden_by]
-    return [_note(one, offset.value, offset.unit, share) for one in hidden]
+    # what pulls towards a rest position pulls at the zero of the position, too, unless it rests there
+    springs = [one for one in fit.effects if one.by_position and OFFSET in one.confused_with]
+    return [_note(one, springs, offset.value, offset.unit, share) for one in hidden]
 
 
-def _note(effect: Effect, value: float, unit: str, share: float) -> Note:
+def _note(effect: Effect, springs: Sequence[Effect], value: float, unit: str, share: float) -> Note:
     values: dict[str, Value] = {"effect": effect.name, "offset": value, "unit": unit, "share": share}
+    constant = ""
+    if springs:
+        values["constant_part_of"] = springs[0].name
+        constant = (
+            f"the constant part of the model's {springs[0].in_sentence}, whose rest is then not at position zero, or "
+        )
     text = (
-        f"The model's offset, {value:.3g} {unit}, is {share:.0%} of dry friction: it may as well be "
+        f"The model's offset, {value:.3g} {unit}, is {share:.0%} of dry friction: it may as well be {constant}"
         f"{effect.in_sentence}, which these trials cannot tell from it; {effect.excited_by} would."
     )
     return Note("absorbed", text, values)

@@ -9,6 +9,7 @@ from compensator.lab.diagnosis.examination import EXPLAINED_BY_RIVAL, FORMULA_SH
 from compensator.lab.diagnosis.remaining import what_remains, without_a_name
 from compensator.lab.diagnosis.unfollowed import unfollowed
 from compensator.lab.diagnosis.wording import (
+    driver_in_words,
     helps_in_words,
     missing_in_words,
     nothing_in_words,
@@ -68,7 +69,7 @@ class _Family:
             return None
         driver, p_value = curve.block.name, among_all(generic.p_value)
         for index, one in enumerate(self.examined):
-            self.examined[index] = replace(one, refused=f"does not follow the curve over {driver}")
+            self.examined[index] = replace(one, refused=f"does not follow the curve over {driver_in_words(driver)}")
         sentence = unknown_in_words(first, driver, p_value)
         return Answer("unknown-effect", sentence, p_value, self.examined, driver, [], remains=True)
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from compensator.lab.diagnosis.confirmation import helpful_curve
 from compensator.lab.diagnosis.note import Note, Value
+from compensator.lab.diagnosis.wording import driver_in_words
 from compensator.lab.effects.free_curve import AGAINST_MOTION, FORCE, TIMES_SPEED, way_of
 from compensator.lab.left_over.left_over import LeftOver, left_over, unexplained_in_words
 from compensator.lab.left_over.orders import recurring_in_words
@@ -32,7 +33,8 @@ def without_a_name(gathered: Candidates, generic: Screening) -> str | None:
     # the best curve, where the evidence pays for it, though it may not hold on other rows
     driver = next((one.block.name for one in generic.evidence[:1] if one.score > 0.0), None)
     facts, wanders = fit.dataset.facts, _wanders(fit, left)
-    return unexplained_in_words(left, driver, gathered.stretches, facts, wanders)
+    over = None if driver is None else driver_in_words(driver)
+    return unexplained_in_words(left, over, gathered.stretches, facts, wanders)
 
 
 def what_remains(fit: Fit, before: Candidates, name: str) -> list[Note]:
@@ -86,5 +88,6 @@ def _trial_names(fit: Fit) -> list[str]:
 def _structure_remains(name: str, driver: str, way: str) -> Note:
     """With an effect in the model, structure over a variable is left."""
     how = {FORCE: "", AGAINST_MOTION: " against the motion", TIMES_SPEED: " times the speed"}[way]
-    text = f"After {name}, structure over {driver}{how} remains; add it and diagnose again."
+    over = driver_in_words(f"{driver}{how}")
+    text = f"After {name}, structure over {over} remains; add it and diagnose again."
     return Note("structure-remains", text, {"effect": name, "driver": driver, "against_motion": way == AGAINST_MOTION})

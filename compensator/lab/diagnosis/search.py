@@ -16,13 +16,14 @@ from compensator.lab import progress
 from compensator.lab.chance import SIGNIFICANT
 from compensator.lab.diagnosis.confirmation import explained_part, slight_one
 from compensator.lab.diagnosis.diagnose import best_named, diagnose
-from compensator.lab.diagnosis.diagnosis import Diagnosis
+from compensator.lab.diagnosis.diagnosis import Diagnosis, JudgedRows
 from compensator.lab.effects.catalogue import effect_named, withheld
 from compensator.lab.model.fit import fit_effects, widened
 from compensator.lab.model.fitted import Fit
-from compensator.lab.model.gain import predicts_better
+from compensator.lab.model.gain import Gain, held_out_gain, predicts_better
 from compensator.lab.model.held_out_error import HeldOut, on_even_terms
 from compensator.lab.model.validation import held_out
+from compensator.lab.rows.dataset import RowChoice
 from compensator.lab.screening.evidence import VERY_STRONG
 
 MOST_EFFECTS = 4
@@ -34,6 +35,22 @@ Change = Literal["add", "swap", "drop"]
 
 
 @dataclass(frozen=True)
+class StepGain:
+    """What a change did to the held-out error on the rows that it was judged on.
+
+    Attributes:
+        rows: which rows these are.
+        before, after: relative held-out errors, 0..1, each row counting alike.
+        gain: relative fall of the error, each row counting by how well it is known.
+    """
+
+    rows: JudgedRows | RowChoice
+    before: float
+    after: float
+    gain: Gain
+
+
+@dataclass(frozen=True)
 class Step:
     """One change of the model.
 
@@ -42,6 +59,7 @@ class Step:
         fit: the model after it.
         held_out: its error, on the study's rows.
         rivals: effects that it could as well be, of one that is added.
+        judged: the gain that it was judged by; None where no diagnosis has one.
     """
 
     change: Change
@@ -50,6 +68,7 @@ class Step:
     fit: Fit
     held_out: HeldOut
     rivals: tuple[str, ...] = ()
+    judged: StepGain | None = None
 
 
 @dataclass(frozen=True)
@@ -113,7 +132,8 @@ def _forward(fit: Fit, most: int, diagnosis: Diagnosis, outset: float) -> Search
     while _is_to_add(diagnosis, explained) and len(fit.names) < len(start.names) + most:
         progress.enter(_adding(len(fit.names) - len(start.names) + 1))
         name, *rivals = diagnosis.classes[0]
-        steps.append(_step("add", name, None, fit_effects(fit, [*fit.names, name]), tuple(rivals)))
+        grown, judged = fit_effects(fit, [*fit.names, name]), _judged_by(diagnosis, name)
+        steps.append(_step("add", name, None, grown, judged, tuple(rivals)))
         swapped = _swaps(start, steps[-1].fit)
         dropped = _drops(start, (swapped or steps)[-1].fit, last_too=bool(swapped))
         steps += [*swapped, *dropped]
@@ -164,8 +184,25 @@ def _leaves_nothing(diagnosis: Diagnosis) -> bool:
     return diagnosis.verdict == "nothing" and not diagnosis.remains and diagnosis.p_value > SIGNIFICANT
 
 
-def _step(change: Change, effect: str, instead_of: str | None, fit: Fit, rivals: tuple[str, ...] = ()) -> Step:
-    return Step(change, effect, instead_of, fit, held_out(fit), rivals)
+def _step(
+    change: Change,
+    effect: str,
+    instead_of: str | None,
+    fit: Fit,
+    judged: StepGain | None,
+    rivals: tuple[str, ...] = (),
+) -> Step:
+    return Step(change, effect, instead_of, fit, held_out(fit), rivals, judged)
+
+
+def _judged_by(diagnosis: Diagnosis, name: str) -> StepGain | None:
+    """The gain by which a diagnosis names an effect."""
+    found = next((one for one in diagnosis.candidates if one.effect.name == name), None)
+    return None if found is None else StepGain(found.rows, found.before, found.after, found.gain)
+
+
+def _gained(rows: RowChoice, before: HeldOut, after: HeldOut) -> StepGain:
+    return StepGain(rows, before.relative, after.relative, held_out_gain(before, after))
 
 
 def _swaps(start: Fit, fit: Fit) -> list[Step]:
@@ -176,10 +213,11 @@ def _swaps(start: Fit, fit: Fit) -> list[Step]:
         better = best_named(without, effect_named(name).rows)
         if better is not None and better not in fit.names:
             swapped = fit_effects(fit, [better if other == name else other for other in fit.names])
-            now, before = on_even_terms(held_out(swapped), held_out(fit))
+            errors = held_out(fit), held_out(swapped)
+            before, now = on_even_terms(*errors)
             if now.rms < before.rms:
                 fit = swapped
-                steps.append(_step("swap", better, name, fit))
+                steps.append(_step("swap", better, name, fit, _gained(fit.dataset.rows, *errors)))
     return steps
 
 
@@ -197,7 +235,8 @@ def _drops(start: Fit, fit: Fit, last_too: bool) -> list[Step]:
         without = fit_effects(fit, [other for other in fit.names if other != name])
         rows = fit.dataset.choice_for([effect_named(name)])
         wide = fit.dataset.choice_for(fit.effects)  # else the two are judged on other rows
-        if not predicts_better(*(held_out(widened(one, wide), rows) for one in (fit, without))):
+        having, lacking = (held_out(widened(one, wide), rows) for one in (fit, without))
+        if not predicts_better(having, lacking):
             fit = without
-            steps.append(_step("drop", name, None, fit))
+            steps.append(_step("drop", name, None, fit, _gained(rows, having, lacking)))
     return steps

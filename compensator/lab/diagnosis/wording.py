@@ -12,6 +12,15 @@ HALF = 0.5  # of the error's power
 LOOK_AT_HOSES = "Look at hoses, cables and seals that bend with the joint."
 
 
+def driver_in_words(driver: str) -> str:
+    """What a residual varies with, as the page and reports have it: to people a velocity is a speed.
+
+    Args:
+        driver: as in a diagnosis: a variable, or one "against motion" or "times speed"; or the variable's title.
+    """
+    return "speed with its sign" if driver == "velocity" else driver.replace("velocity", "speed")
+
+
 def missing_in_words(best: Candidate) -> str:
     """The answer where an effect is missing, with its numbers."""
     gain, where = best.gain.in_words(best.before, best.after), ", near reversals too," * (best.rows == "moving")
@@ -39,8 +48,8 @@ def unknown_in_words(nearest: Candidate, driver: str, p_value: float) -> str:
     if driver == HYSTERESIS_DRIVER:
         driver, look = "where the joint has turned back, as what bends along and slides does", f" {LOOK_AT_HOSES}"
     return (
-        f"Something is missing, and it is none of the catalogue: it varies with {driver}; the nearest formula, "
-        f"{nearest.effect.in_sentence}, {why} ({chance_in_words(p_value)}).{look}"
+        f"Something is missing, and it is none of the catalogue: it varies with {driver_in_words(driver)}; the nearest "
+        f"formula, {nearest.effect.in_sentence}, {why} ({chance_in_words(p_value)}).{look}"
     )
 
 

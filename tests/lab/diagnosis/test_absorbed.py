@@ -40,6 +40,20 @@ def test_beside_a_name_it_is_a_note_with_its_numbers():
     assert note.text not in found.sentence
 
 
+@pytest.mark.parametrize("spring", ["spring", "hardening_spring"])
+def test_a_spring_of_the_model_may_have_its_constant_part_in_the_offset(spring):
+    """It pulls towards a rest position that is not zero."""
+    joint = Joint(offset=0.0, extra=lambda x: 0.15 * (x.q - 0.2))
+    dataset = make_dataset(recordings(joint, seed=3), FACTS, Processing(cutoff_hz=8.0))
+    fit = fit_model(dataset, [*default_effects(FACTS), spring])
+    (note,) = absorbed(fit, ["coulomb_asymmetry"])
+    assert "may as well be the constant part of the model's" in note.text
+    assert "or direction-asymmetric Coulomb friction" in note.text
+    assert note.values["constant_part_of"] == spring
+    (without,) = absorbed(fit_model(dataset, default_effects(FACTS)), ["coulomb_asymmetry"])
+    assert "constant_part_of" not in without.values
+
+
 def test_an_offset_that_the_effect_named_has_made_is_no_friction_by_direction():
     """Damping by direction, as long as it is missing, leaves its mean in the offset."""
     joint = Joint(offset=0.0, extra=lambda x: 0.02 * np.abs(x.v))

@@ -15,6 +15,7 @@ from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.diagnosis import Diagnosis
 from compensator.lab.diagnosis.note import Note
 from compensator.lab.diagnosis.physical import TOLD, why_impossible
+from compensator.lab.diagnosis.wording import driver_in_words
 from compensator.lab.effects.catalogue import catalogue, default_effects
 from compensator.lab.errors import UnusableDataError
 from compensator.lab.model.fit import fit_effects, fit_model
@@ -276,7 +277,7 @@ def test_what_no_formula_describes_is_called_unknown(law, driver):
     found = diagnosis_of(recordings(Joint(extra=law), seed=5))
     assert found.verdict == "unknown-effect", found.sentence
     assert found.driver == driver
-    assert driver in found.sentence
+    assert driver_in_words(driver) in found.sentence
     assert found.p_value <= 0.01
     assert chance_in_words(found.p_value) in found.sentence
 

@@ -10,6 +10,7 @@ from compensator.lab.diagnosis import confirmation, unfollowed
 from compensator.lab.diagnosis.confirmation import LEAST_GAIN_OF_CHAIN
 from compensator.lab.diagnosis.diagnose import diagnose
 from compensator.lab.diagnosis.search import search
+from compensator.lab.diagnosis.wording import driver_in_words
 from compensator.lab.effects.catalogue import default_effects
 from compensator.lab.model.fit import fit_model
 from compensator.lab.model.fitted import Fit
@@ -80,3 +81,15 @@ def test_a_formula_follows_a_curve_by_its_evidence_or_by_what_is_left_to_the_cur
     monkeypatch.setattr(unfollowed, "is_helpful", lambda *_: helps)
     one = SimpleNamespace(evidence=SimpleNamespace(noncentrality=share), explained=object())
     assert unfollowed._follows(one, SimpleNamespace(noncentrality=1.0), None) == follows
+
+
+@pytest.mark.parametrize(
+    ("driver", "told"),
+    [
+        ("velocity against motion", "speed against motion"),
+        ("velocity", "speed with its sign"),
+        ("load against motion", "load against motion"),
+    ],
+)
+def test_a_velocity_is_a_speed_as_on_the_page(driver, told):
+    assert driver_in_words(driver) == told
