@@ -94,26 +94,23 @@ class _Search:
         self._grid = self._grid if path is None else path.shown(self._grid)
         powers = [self.explained(columns) for columns in self._columns()]
         best = int(np.argmax(powers))
-        other = None if path is None else self._off_grid(path, powers[best])
-        return self._grid[best] if other is None else other
+        other = None if path is None else self._off_grid(path)
+        if other is not None and self.explained(self._dataset.columns(self._effect, other)) > powers[best]:
+            return other
+        return self._grid[best]
 
-    def _off_grid(self, path: Path, power: float) -> Shape | None:
-        """The order of all that explains most, where it is worth so many tries (BIC); None where the grid's best is.
+    def _off_grid(self, path: Path) -> Shape | None:
+        """The order off the grid that explains most; None where all that the rows show lie within a line's width of it.
 
-        Args:
-            path: of the rows.
-            power: that the best of the grid explains.
+        What goes round with a shaft does so a whole number of times: so near to one of the grid it is that.
         """
-        kind = self._effect.goes_round
-        orders = path.orders[path.orders > self._grid[0][0]]
-        if kind is None or not len(orders):
+        kind, grid, orders = self._effect.goes_round, np.array(self._grid)[:, 0], path.orders
+        apart = (np.abs(orders[:, None] - grid).min(axis=1) > path.once) & (orders > grid.min())
+        if kind is None or not apart.any():
             return None
-        best = float(orders[np.argmax(path.scanned(self._basis, self._rest, orders, (kind,))[kind])])
-        shape = (path.refined(self._basis, self._rest, best, kind),)
-        left = float(self._rest @ self._rest)
-        leaves = left - self.explained(self._dataset.columns(self._effect, shape))
-        gained = independent_rows(self._rest) * np.log((left - power) / max(leaves, TINY * left))
-        return shape if gained > 2.0 * np.log(len(orders) / len(self._grid)) else None
+        sizes = path.scanned(self._basis, self._rest, orders, (kind,))[kind]
+        best = float(orders[np.argmax(np.where(apart, sizes, 0.0))])
+        return (path.refined(self._basis, self._rest, best, kind),)
 
     def grow(self) -> Shape:
         """One order after the other, each the best beside those before it, while the rows pay for it (BIC)."""
