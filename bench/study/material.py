@@ -254,4 +254,5 @@ def _dataset(source: _Source, definition: Definition) -> Dataset:
     recordings = source.recordings()
     progress.enter(FILTERING)
     with lab_errors():
-        return make_dataset(recordings, definition.facts, Processing(definition.cutoff_hz, definition.rows))
+        made = make_dataset(recordings, definition.facts, Processing(definition.cutoff_hz, definition.rows))
+    return replace(made, held_out=frozenset(np.flatnonzero(definition.held_out).tolist()))

@@ -30,7 +30,7 @@ def _run(words: list[str], folder: Path, environment: dict[str, str], said: Path
 
 @pytest.mark.timeout(900)  # a minute or two by itself; a shared machine may take several
 def test_the_study_of_the_tutorial(tmp_path: Path) -> None:
-    assert len(BLOCKS) == 7
+    assert len(BLOCKS) == 8
     export, *commands = (shlex.split(line) for line in "".join(BLOCKS).splitlines())
     assert export[0] == "export"
     environment = dict([export[1].split("=")])
@@ -42,5 +42,7 @@ def test_the_study_of_the_tutorial(tmp_path: Path) -> None:
         process.start()
         process.join()
         assert process.exitcode == 0, said.read_text()
-    assert "weight_friction" in said.read_text()
+    assert re.findall(r"^Added (\w+)", said.read_text(), re.MULTILINE) == ["weight_friction"]
+    # the search ends with what a diagnosis of the model that it kept says, and so does the last one
+    assert len(re.findall(r"^Nothing is missing", said.read_text(), re.MULTILINE)) == 2
     assert (tmp_path / "study-1.html").stat().st_size > 10_000

@@ -124,7 +124,7 @@ def trained_trials(dataset: Dataset, training: BoolArray) -> IntArray:
     """Which trials a model may be fitted to: those of its training rows, and those that nobody held out.
 
     A trial of reversals or starts alone has no sliding row, and so no training row of a model of sliding; it is not
-    held out by that. Where other trials are held out on purpose, it stays out of either.
+    held out by that. Where trials are left out that the owner does not hold out, nobody knows, and it stays out.
 
     Args:
         dataset: of the rows.
@@ -132,5 +132,5 @@ def trained_trials(dataset: Dataset, training: BoolArray) -> IntArray:
     """
     trained = np.unique(dataset.trial_index[training])
     counted = np.unique(dataset.trial_index[dataset.counted])
-    every = np.arange(len(dataset.trials), dtype=np.int64)
-    return every if np.isin(counted, trained).all() else trained
+    every = np.setdiff1d(np.arange(len(dataset.trials), dtype=np.int64), list(dataset.held_out))
+    return every if np.isin(np.intersect1d(counted, every), trained).all() else trained

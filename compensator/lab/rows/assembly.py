@@ -120,7 +120,8 @@ def more_trials(dataset: Dataset, recordings: Sequence[Recording]) -> Dataset:
     signals = [make_signals(recording, effort, facts, cutoff) for recording in recordings]
     trials = tuple(_make_trial(s, facts, cutoff, scales) for s in signals)
     trials = trials if dataset.crosses_free_play else _on_one_flank(trials, cutoff)
-    return replace(dataset, trials=trials, scales=scales, uncorrected=None, cache={}, unfiltered={})
+    rows = replace(dataset, trials=trials, scales=scales, uncorrected=None, cache={}, unfiltered={})
+    return replace(rows, held_out=frozenset())
 
 
 def usable(dataset: Dataset, recordings: Sequence[Recording]) -> list[Recording]:

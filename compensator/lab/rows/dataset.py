@@ -115,6 +115,7 @@ class Dataset:
         scales: of all trials.
         crosses_free_play: rows near a crossing of the free play are counted, since nearly all are.
         sees_all: rows in steady sliding see all samples, too (see `seen_by`).
+        held_out: trials that no model is fitted to, as far as the owner says, by their index.
         uncorrected: the same rows at the position that the sensor reads; None: these are.
     """
 
@@ -126,6 +127,7 @@ class Dataset:
     scales: Scales
     crosses_free_play: bool = False
     sees_all: bool = False
+    held_out: frozenset[int] = frozenset()
     uncorrected: "Dataset | None" = None
     cache: dict[tuple[str, Shape], FloatArray] = field(default_factory=dict, repr=False, compare=False)
     unfiltered: dict[tuple[str, Shape], FloatArray] = field(default_factory=dict, repr=False, compare=False)
