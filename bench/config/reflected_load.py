@@ -72,6 +72,6 @@ def _lever(rig: Rig) -> tuple[float, float]:
     if torque_constant is None or ratio is None or length_m is None:
         raise ConfigurationError(
             f"rig '{rig.name}': a reflected load needs motor.torque_constant_n_m_a, gear.ratio and arm.length_m; add "
-            "what is missing to the rig"
+            "what is missing to the rig, or have it found: commission the joint first"
         )
     return torque_constant * ratio, length_m

@@ -10,6 +10,7 @@ from bench.study.create import definition_of
 from bench.study.material import material_of
 from bench.study.models.coverage import Checked
 from compensator.lab.effects.catalogue import effect_named
+from compensator.lab.recordings.repeats import NOT_CONDITIONS, REPEAT
 
 ROWS_PER_PARAMETER = 20
 """Rows in which the joint slides, for each parameter: with fewer, the fit follows the noise. Load sweeps and steps rest
@@ -62,7 +63,7 @@ def _advice(trials: Sequence[Trial]) -> tuple[str, str]:
     values: dict[str, set[Condition]] = {}
     for trial in trials:
         for key, value in trial.conditions.items():
-            if isinstance(value, float) and not isinstance(value, bool) and not key.endswith("_s"):
+            if isinstance(value, float) and not key.endswith("_s") and key not in NOT_CONDITIONS:
                 values.setdefault(key, set()).add(value)
     several = {key: sorted(found, key=float) for key, found in values.items() if len(found) >= FEWEST_VALUES}
     if several:
@@ -70,6 +71,6 @@ def _advice(trials: Sequence[Trial]) -> tuple[str, str]:
         if len(found) < len(trials):
             middle = found[len(found) // 2]
             return f"{key}={middle:g}", "a value between others: the model is judged where it was not fitted"
-    if len(values.get("repeat", ())) > 1:
+    if len({trial.conditions.get(REPEAT) for trial in trials} - {None}) > 1:
         return "repeat=2", "a repeat: it tells whether the model holds again, not whether it holds elsewhere"
     return "", "nothing to hold out: each trial is left out in turn"

@@ -29,9 +29,15 @@ def test_a_gain_of_nothing_is_none_and_nothing_has_no_sign():
 
 def test_names_that_are_made_for_programs_become_words_and_those_of_people_stay():
     table = Table("Trials", ["name"], [["run_2_b"], ["coulomb_asymmetry hides in run_2_b"], [3.0]])
-    section = Section("x", ["warm_up needs session_s; put motor.torque_constant_n_m_a into rig.toml"], [table])
+    section = Section(
+        "x",
+        ['warm_up needs session_s; put motor.torque_constant_n_m_a into rig.toml, or effort = "current_estimate"'],
+        [table],
+    )
     (found,) = in_words([section], ["run_2_b"])
-    assert found.sentences == ["warm up needs session; put motor.torque_constant_n_m_a into rig.toml"]
+    assert found.sentences == [
+        'warm up needs session; put motor.torque_constant_n_m_a into rig.toml, or effort = "current_estimate"'
+    ]
     assert found.tables[0].rows == [["run_2_b"], ["coulomb asymmetry hides in run_2_b"], [3.0]]
 
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 from bench.config.quantities import UNITS, unit_of
 from bench.report import Section, Table
 
-_NAME = re.compile(r"(?<![\w./-])[a-z]+(?:_[a-z0-9]+)+(?![\w/-])(?!\.\w)")
+# none in quotes: that is to be typed
+_NAME = re.compile(r'(?<![\w./"-])[a-z]+(?:_[a-z0-9]+)+(?![\w/"-])(?!\.\w)')
 _FACTORS = {"kg": ("g", 1000.0)}  # as a load is said
 KEYS = "Rig"  # the table whose names are those of a file
 

@@ -65,8 +65,10 @@ export async function startForm(place, live, queued, begun) {
   const send = async (path, body, told) => {
     replace(answer);
     if ((await plan()) === null) {
-      replace(answer, problemBox(new Error("Not started, nothing has moved, nothing is recorded. See what is marked.")));
-      form.element.querySelector("[aria-invalid=true]")?.closest(".field").scrollIntoView({ block: "nearest" });
+      const marked = form.element.querySelector("[aria-invalid=true]");
+      const where = marked ? "See what is marked." : "The reason stands above.";
+      replace(answer, problemBox(new Error(`Not started, nothing has moved, nothing is recorded. ${where}`)));
+      marked?.closest(".field").scrollIntoView({ block: "nearest" });
       return;
     }
     const done = await attempt(answer, () => post(path, body()));

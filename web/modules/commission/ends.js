@@ -34,6 +34,6 @@ export function ending({ state, refusal, first_load: load }) {
   const found = load ? `The trial load of ${withShownUnit(load.hung_kg, "kg")} was found as ${withShownUnit(load.found_kg, "kg")}. ` : "";
   return [
     h("div", { class: "good", role: "status" }, `Commissioned. ${found}Keep both files: they are gone when the service ends. Then start the service with them: friction-bench --config bench.toml serve`),
-    withFiles([], [["bench.toml", "Download bench.toml", "/commission/bench.toml", "bench.toml"], ["Evidence", "Download the evidence", "/commission/evidence.json", "bench.evidence.json"]]),
+    withFiles([], [["Download bench.toml", "Download bench.toml", "/commission/bench.toml", "bench.toml"], ["Download the evidence", "Download the evidence", "/commission/evidence.json", "bench.evidence.json"]]),
   ];
 }
