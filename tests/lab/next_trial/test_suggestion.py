@@ -242,11 +242,11 @@ def test_an_option_may_be_suggested_more_often_than_there_are_options(fit, diagn
 
 def test_a_rival_of_a_shape_that_is_not_scanned_is_separated_at_that_shape():
     """A diagnosis finds all shapes anew: none of them need be one of those that are scanned."""
-    made = recordings(Joint(extra=lambda x: 0.02 * np.sin(3.3 * x.q)), seed=4)
+    made = recordings(Joint(extra=lambda x: 0.02 * np.sin(5.3 * x.q)), seed=4)
     fit = fit_model(make_dataset(made, FACTS, Processing()), default_effects(FACTS))
     found = diagnose(fit)
-    between = replace(found.candidates[0], shape=(3.3,))
+    between = replace(found.candidates[0], shape=(5.3,))
     assert between.effect.name == "cogging"
-    assert (3.3,) not in between.effect.shapes(fit.dataset.trials[0].motion)
-    assert Separation(gather(fit), [between]).rivals[0].shape == (3.3,)
+    assert (5.3,) not in between.effect.shapes(fit.dataset.trials[0].motion)
+    assert Separation(gather(fit), [between]).rivals[0].shape == (5.3,)
     assert d_prime_of(fit, replace(found, candidates=[between]), "cogging") > SURE
