@@ -10,7 +10,7 @@ from tests.service.recorded_joint import study_path
 pytestmark = pytest.mark.browser
 OUTSIDE = """() => [...document.querySelectorAll("td, th, figcaption, h1, h2, p, .main-svg")]
   .filter((one) => one.getBoundingClientRect().right > innerWidth + 1).map((one) => one.textContent.slice(0, 80))"""
-NAMES = re.compile(r"\b[a-z]+(?:_[a-z0-9]+)+\b")
+NAMES = re.compile(r'(?<!")\b[a-z]+(?:_[a-z0-9]+)+\b(?!")')  # in quotes they are to be typed
 
 
 @pytest.fixture(scope="module")

@@ -9,12 +9,9 @@ from drivers.canopen.cia301.objects import MAX_TORQUE, MODE, PROFILE_VELOCITY, T
 from drivers.contract import Mode
 from drivers.errors import DriveConfigurationError
 from sim_backend.devices.canopen.data_types import I32, U16, U32
-from sim_backend.devices.canopen.objects.entry import Access, Object, variable
-from sim_backend.devices.canopen.objects.family import Rating
-from sim_backend.devices.canopen.objects.generic import GENERIC
-from sim_backend.devices.joint_tables import behind_a_drive
+from sim_backend.devices.canopen.objects.entry import Access, variable
 from tests.drivers.dictionaries.attempt import PERIOD_S, RATED_A, device, host
-from tests.drivers.dictionaries.traits import PROFILE_POSITION, PROFILE_TORQUE, TRAITS, Trait
+from tests.drivers.dictionaries.traits import PROFILE_TORQUE, TRAITS, Trait, without_pdo
 
 pytestmark = pytest.mark.virtual_time
 UNRATED = (0x6075, 0x6076, 0x6078)
@@ -27,12 +24,6 @@ WIDE = Trait(
         variable(0x6077, "Torque actual value", I32, Access.RO),
     ),
 )
-
-
-def without_pdo(*indices: int) -> tuple[Object, ...]:
-    """Objects as they are, that can be put into no PDO."""
-    objects = {one.index: one.entries[0] for one in GENERIC.objects(Rating.of(behind_a_drive()))}
-    return tuple(variable(index, "Effort", objects[index].kind, objects[index].access) for index in indices)
 
 
 UNMAPPED = Trait(without=(*UNRATED, 0x6071, 0x6077), added=without_pdo(0x6071, 0x6077))
@@ -129,17 +120,6 @@ def test_a_rated_current_by_torque_and_constant_is_told_as_such(tmp_path) -> Non
         row = next(row for row in drive.units if "1000 permille" in row.quantity)
         assert row.drive.endswith("by motor rated torque (0x6076:00) / motor.torque_constant_n_m_a of the rig")
         assert float(row.drive.split()[0]) == pytest.approx(row.configuration, rel=1e-5)
-
-
-def test_a_word_of_a_mapping_is_told_by_its_digits(tmp_path) -> None:
-    fixed = Trait(without=(0x607A,), added=without_pdo(0x607A), default={(0x6502, 0): PROFILE_POSITION})
-    says = r"writing 0x607A0020 to mapping of RPDO1 \(0x1600:02\): refused"
-    with (
-        device(fixed.write(tmp_path, "words")) as running,
-        host(running) as drive,
-        pytest.raises(DriveConfigurationError, match=says),
-    ):
-        drive.open(PERIOD_S)
 
 
 def test_values_of_the_communication_profile_are_told_by_their_digits(tmp_path) -> None:

@@ -11,7 +11,7 @@ from drivers.errors import DriveConfigurationError, WatchdogError
 from sim_backend.devices.canopen.conduct import Conduct
 from sim_backend.devices.canopen.objects.entry import Access
 from tests.drivers.dictionaries.attempt import PERIOD_S, RATED_A, attempt, cycles, device, host
-from tests.drivers.dictionaries.traits import TRAITS, Trait
+from tests.drivers.dictionaries.traits import PROFILE_POSITION, TRAITS, Trait, without_pdo
 
 pytestmark = pytest.mark.virtual_time
 MANNERS = {
@@ -129,6 +129,10 @@ HELD_TYPES = {(0x1400 + number, 2): Access.RO for number in range(4)}
             r"RPDO1 \(0x1400:02\) reads back as 0xFC; 0x1",
         ),
         (Trait(without=(0x6064,)), r"has no position actual value \(0x6064:00\) .*Object does not exist"),
+        (
+            Trait(without=(0x607A,), added=without_pdo(0x607A), default={(0x6502, 0): PROFILE_POSITION}),
+            r"writing 0x607A0020 to mapping of RPDO1 \(0x1600:02\): refused",
+        ),
     ],
 )
 def test_a_drive_that_lacks_what_every_cycle_needs_is_told_so(trait, says, tmp_path) -> None:

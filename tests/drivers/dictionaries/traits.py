@@ -108,6 +108,13 @@ _NO_TORQUE_IN_FOUR = _STATIC | {(0x1601, 0): 1}
 _COB_IDS = {(base + n, 1): first + 0x100 * n for base, first in ((0x1400, 0x200), (0x1800, 0x180)) for n in range(4)}
 _NO_GUARD: dict[str, Any] = {"without": (0x1016, 0x100C, 0x100D), "without_places": RPDO_TIMERS}
 
+
+def without_pdo(*indices: int) -> tuple[Object, ...]:
+    """Objects as they are, that can be put into no PDO."""
+    objects = {one.index: one.entries[0] for one in GENERIC.objects(Rating.of(behind_a_drive()))}
+    return tuple(variable(index, "Effort", objects[index].kind, objects[index].access) for index in indices)
+
+
 TRAITS: dict[str, Trait] = {
     "plain": Trait(),
     "fixed-sync": Trait(access={(0x1005, 0): Access.CONST}, low={(0x1005, 0): 0x80}, high={(0x1005, 0): 0x80}),
